@@ -3,10 +3,12 @@
 A factor of safety that is only known to be 64 or more is not in means; see is_beyond().
 
 Only runs that have a value count: a run without an equilibrium, or whose point an excavation has taken, is named in the summary.
-Probabilities "or no equilibrium" and that to fail also count the runs that were found to have none.
+Probabilities "or no equilibrium" and that to fail also count the runs whose blocks move. A run that ended undecided is neither stable nor
+failed: with such runs, these probabilities have two rows, "at least" (none of them counts) and "at most" (all of them do).
 """
 
 import collections
+import dataclasses
 import itertools
 import math
 import re
@@ -17,7 +19,7 @@ import numpy as np
 from . import failure, files, intervals
 from .design import openturns
 from .intervals import CONFIDENCE
-from .quantities import NO_EQUILIBRIUM
+from .quantities import MOVING, NO_EQUILIBRIUM, UNDECIDED, ending_of, file_of
 from .study_file import ENDS, EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
@@ -85,14 +87,30 @@ def counted_runs(study, rows, is_one):
     return np.array([row["run"] for row in rows if is_one(row) and row["run"] < last and study.design.level(row["run"]) != "coarse"], int)
 
 
-def without_equilibrium(study, rows, at):
-    """Numbers of the runs that have no equilibrium, and so no value of a quantity, of those that values_of() may have."""
-    return counted_runs(study, rows, lambda row: row["values"][at] is None and row["exit_code"] == NO_EQUILIBRIUM)
+@dataclasses.dataclass
+class NoValue:
+    """Numbers of the runs that have no value of a quantity and that statistics count all the same, as arrays; of those that values_of()
+    may have."""
+    moving: np.ndarray  # blocks move
+    undecided: np.ndarray  # the search for equilibrium ended without an answer; None if no run of the study is
+    beyond: np.ndarray  # a factor of safety is known to be LARGEST_FACTOR or more, and nothing else
+
+    def before(self, end):
+        """The same of the runs before this one."""
+        return NoValue(*(None if runs is None else runs[runs < end] for runs in (self.moving, self.undecided, self.beyond)))
 
 
-def beyond_search(study, rows, at):
-    """Numbers of the runs of which a factor of safety is known to be LARGEST_FACTOR or more, and nothing else."""
-    return counted_runs(study, rows, lambda row: is_beyond(study, row, at))
+ALL_HAVE_VALUES = NoValue(np.zeros(0, int), None, np.zeros(0, int))
+
+
+def no_value(study, rows, at):
+    """The NoValue of a quantity."""
+    file = file_of(study.quantities[at])
+
+    def runs_that(ended):
+        return counted_runs(study, rows, lambda row: row["values"][at] is None and row["no_equilibrium"].get(file) == ended)
+    undecided = runs_that(UNDECIDED)
+    return NoValue(runs_that(MOVING), undecided if len(undecided) else None, counted_runs(study, rows, lambda row: is_beyond(study, row, at)))
 
 
 def bracket_width(study, rows, at):
@@ -132,9 +150,10 @@ def mean_with_interval(study, values, run, coarse=None):
 
 
 def limits_of(quantity):
-    """Its limits with their sides: name, test, and what a run without equilibrium counts, which has no value: None if it is left out."""
+    """Its limits with their sides: name, test, and what a run without a value counts whose blocks move: None if runs without equilibrium
+    are left out."""
     if quantity.what == "failed":
-        return [("probability", lambda values: values > 0.5, None)]
+        return [("probability", lambda values: values > 0.5, True)]
     found = []
     for side, limits in (("above", quantity.above), ("below", quantity.below)):
         for limit in limits:
@@ -157,14 +176,21 @@ def share_with_interval(study, hits, run):
     return intervals.probability_of_crossed(table) if table is not None else (float(np.mean(hits)), None, None)
 
 
-def shares_of_limits(study, quantity, values, run, without, beyond=()):
-    """Probabilities of the limits of a quantity: name, number of runs, value, low, high. beyond: as beyond_search()."""
+def shares_of_limits(study, quantity, values, run, others):
+    """Probabilities of the limits of a quantity: name, number of runs, value, low, high. others: a NoValue."""
     found = []
-    for name, hit, of_failed in limits_of(quantity):
-        hits, of = np.append(hit(values), hit(np.full(len(beyond), float(LARGEST_FACTOR)))), np.append(run, beyond).astype(int)
-        if of_failed is not None:
-            hits, of = np.append(hits, np.full(len(without), of_failed)), np.append(of, without).astype(int)
-        found.append((name, len(of), *share_with_interval(study, hits, of)))
+    for name, hit, of_moving in limits_of(quantity):
+        hits = np.append(hit(values), hit(np.full(len(others.beyond), float(LARGEST_FACTOR))))
+        of = np.append(run, others.beyond).astype(int)
+        if of_moving is not None:
+            hits, of = np.append(hits, np.full(len(others.moving), of_moving)), np.append(of, others.moving).astype(int)
+        if of_moving is None or others.undecided is None:
+            found.append((name, len(of), *share_with_interval(study, hits, of)))
+            continue
+        of = np.append(of, others.undecided).astype(int)
+        for bound, counts in (("at least", False), ("at most", True)):
+            of_all = np.append(hits, np.full(len(others.undecided), counts))
+            found.append((f"{name}, {bound}", len(of), *share_with_interval(study, of_all, of)))
     return found
 
 
@@ -185,11 +211,10 @@ def finite(value):
     return value if math.isfinite(value) else None
 
 
-def statistics(study, quantity, values, run, coarse=None, without=(), beyond=(), width=None):
-    """Statistics of a quantity: name, number of runs, value, low, high. coarse [value, 2]: as coarse_of(); without: as
-    without_equilibrium(); beyond: as beyond_search(); width: as bracket_width(). Where all brackets of a factor of safety are the same,
-    its scatter is only known to be less than their width."""
-    found, n = [], len(values)
+def statistics(study, quantity, values, run, coarse=None, others=ALL_HAVE_VALUES, width=None):
+    """Statistics of a quantity: name, number of runs, value, low, high. coarse [value, 2]: as coarse_of(); others: as no_value(); width:
+    as bracket_width(). Where all brackets of a factor of safety are the same, its scatter is only known to be less than their width."""
+    found, n, beyond = [], len(values), others.beyond
     if quantity.what != "failed" and n > 0:
         *mean, error = mean_with_interval(study, values, run, coarse)
         only_bound = n > 1 and bool(width) and np.ptp(values) == 0
@@ -207,12 +232,12 @@ def statistics(study, quantity, values, run, coarse=None, without=(), beyond=(),
             value, low, high = quantile(values, len(beyond), part)
             dependent = study.design.kind == "networks x parameters"  # order statistics are of independent values
             found.append((f"quantile {part:g}", n + len(beyond), value, *((None, None) if dependent else (low, high))))
-    return found + shares_of_limits(study, quantity, values, run, without, beyond)
+    return found + shares_of_limits(study, quantity, values, run, others)
 
 
-def first_of(quantity, study, values, run, coarse=None, without=(), beyond=()):
+def first_of(quantity, study, values, run, coarse, others):
     """The statistics whose convergence is shown: mean, or probability of failure; and the probabilities of limits."""
-    found = shares_of_limits(study, quantity, values, run, without, beyond)
+    found = shares_of_limits(study, quantity, values, run, others)
     if quantity.what == "failed":
         return found
     return [("mean", len(values), *mean_with_interval(study, values, run, coarse)[:3])] + found
@@ -231,18 +256,18 @@ def convergence(study, rows, at):
     quantity = study.quantities[at]
     values, run = values_of(study, rows, at)
     coarse = coarse_of(study, rows, at, run)
-    others = without_equilibrium(study, rows, at), beyond_search(study, rows, at)
+    others = no_value(study, rows, at)
     found = []
     if study.design.kind == "networks x parameters" and len(values):
         ends = [run_of * study.design.parameters for run_of in range(FEWEST_NETWORKS, study.design.networks)]
         for last in [*ends[::max(1, -(-len(ends) // STEPS))], study.design.runs]:
             counts = run < last
             if counts.any():
-                found += first_of(quantity, study, values[counts], run[counts], None, *(one[one < last] for one in others))
+                found += first_of(quantity, study, values[counts], run[counts], None, others.before(last))
         return found
     for count in [] if len(values) == 0 else counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]:
-        before = others if count == len(values) else [one[one < run[count]] for one in others]
-        found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], *before)
+        before = others if count == len(values) else others.before(run[count])
+        found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], before)
     return found
 
 
@@ -254,7 +279,7 @@ def enough(study, rows):
     if len(values) < (FEWEST if study.design.fine_runs else 2):
         return False
     for name, _, value, low, high in first_of(quantity, study, values, run, coarse_of(study, rows, at, run),
-                                              without_equilibrium(study, rows, at), beyond_search(study, rows, at)):
+                                              no_value(study, rows, at)):
         half = (high - low) / 2
         if name == "mean":
             if stop.half_width and half > stop.half_width:
@@ -473,16 +498,12 @@ def in_columns(rows):
                       for place, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
 
 
-def is_moving(row):
-    """Whether a run without equilibrium ended because blocks move; by the words of demsolve."""
-    return "moving blocks: " in row["reason"]
-
-
 def failure_words(row):
     """A short line on a run that failed."""
     reason = row["reason"].partition(";")[0].removeprefix(f"{row['program']}: ")
     code = "" if row["exit_code"] == NO_EQUILIBRIUM else f"exit code {row['exit_code']}: "
-    return f"run {row['run']} failed: {row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")
+    what = UNDECIDED if ending_of(row) == UNDECIDED else "failed"
+    return f"run {row['run']} {what}: {row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")
 
 
 def missing_words(study, rows):
@@ -524,6 +545,18 @@ def strength_factors(study):
     return list(dict.fromkeys(factors))
 
 
+def undecided_words(study, rows):
+    """A warning of runs that ended undecided, which says how they are counted."""
+    count = sum(ending_of(row) == UNDECIDED for row in rows)
+    if not count:
+        return []
+    how = "count as failed" if study.design.directions else \
+        'have no value; probabilities that depend on them have a row "at least", in which none of them counts, and a row "at most", ' \
+        "in which all of them do"
+    return [f"warning: {count} of {len(rows)} runs ended undecided: whether they have an equilibrium is not known. They {how}. More "
+            "most_steps of [equilibrium] can decide them"]
+
+
 def reduced_words(study):
     """A warning of displacements that are those of runs with reduced strengths."""
     factors = strength_factors(study)
@@ -545,8 +578,8 @@ def warning_words(rows):
 
 def with_unit(name, quantity):
     """The name of a statistic, where it has a limit with the unit of this; that of a failure says what it is the probability of."""
-    if quantity.what == "failed" and name == "probability":
-        return "probability of no equilibrium"
+    if quantity.what == "failed":
+        return name.replace("probability", "probability of no equilibrium", 1)
     return name if quantity.unit == "1" else re.sub(r"^(probability (?:above|below) [^ ,]+)", rf"\1 {quantity.unit}", name)
 
 
@@ -562,8 +595,7 @@ def summary(study, rows, why, of_each, of_histories, of_chance=None):
     lines += [f"design               {study.design.kind}",
               f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
               f"without equilibrium  {len(without)}"]
-    lines += [f"  blocks move        {sum(map(is_moving, without))}",
-              f"  undecided          {len(without) - sum(map(is_moving, without))}"] * bool(without)
+    lines += [f"  {what:17}  {sum(ending_of(row) == what for row in without)}" for what in (MOVING, UNDECIDED) if without]
     lines += [f"other failures       {other}", *chance]
     for quantity, found, of_shares in of_each:
         lines += ["", f"{quantity.title()}, {found.get('values', found['statistics'][0][1])} {study.design.counted()} with a value" +
@@ -578,7 +610,7 @@ def summary(study, rows, why, of_each, of_histories, of_chance=None):
                                    for name, measure, *numbers in of_shares if measure == CORRELATION)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
     lines += [""] * bool(of_histories) + of_histories
-    notes = too_large + reduced_words(study) + warning_words(rows)
+    notes = too_large + undecided_words(study, rows) + reduced_words(study) + warning_words(rows)
     if not study.design.directions:
         notes = incomplete_words(study, rows) + notes + missing_words(study, rows)
     return "\n".join(lines + [""] * bool(notes) + notes) + "\n"
@@ -601,11 +633,10 @@ def write(study, rows, given, why, estimates, of_histories, out):
         found.append(of_failure(study, rows, estimates))
     for at, quantity in enumerate([] if by_direction else study.quantities):
         values, run = values_of(study, rows, at)
-        beyond = beyond_search(study, rows, at)
-        if len(values) or len(beyond):
-            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run), without_equilibrium(study, rows, at), beyond,
-                            bracket_width(study, rows, at))
-            found.append((quantity, {"at": at, "statistics": of, "beyond": len(beyond), "values": len(values)}, shares(study, rows, given, at)))
+        others = no_value(study, rows, at)
+        if len(values) or len(others.beyond):
+            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run), others, bracket_width(study, rows, at))
+            found.append((quantity, {"at": at, "statistics": of, "beyond": len(others.beyond), "values": len(values)}, shares(study, rows, given, at)))
     files.write_text(out / "answers.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.label(), one.unit, *row) for one, of, _ in found for row in of["statistics"]]))

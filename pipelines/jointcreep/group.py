@@ -89,7 +89,7 @@ def made(study, scene, text, run, programs, folder):
             values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
     (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
     row = {"run": run["run"], "exit_code": 0, "program": "", "reason": "", "warnings": []}
-    seconds, processor_before, solve_code = 0.0, processor_seconds(), None
+    seconds, processor_before, codes, endings = 0.0, processor_seconds(), {}, {}
     for name, arguments in programs_of(study, run["run"]):
         if name == "jointgen":
             arguments = [*arguments, "--realization", str(run["network"])]
@@ -99,15 +99,19 @@ def made(study, scene, text, run, programs, folder):
         if was_stopped(code) or code == FAILED_INSIDE and "out of memory" in message:
             why = f"exit code {code}" if code > 0 else f"signal {-code}"
             raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
-        if "result.h5" in arguments:
-            solve_code = code
+        if name == "demsolve":
+            made_file = arguments[-1]
+            codes[made_file] = code
+            if code == quantities.NO_EQUILIBRIUM:
+                endings[made_file] = quantities.ending(folder / made_file.replace(".h5", ".failed.h5"))
         if code != 0 and row["exit_code"] == 0:
             row.update(exit_code=code, program=name, reason=message)
         if code != 0 and name != "demsolve":
             break
     row.update(network=run["network"], given=run["given"])
-    row["values"] = quantities.of_run(study, scene, folder, solve_code)
-    if study.histories and solve_code == 0:
+    row["no_equilibrium"] = endings
+    row["values"] = quantities.of_run(study, scene, folder, codes, endings)
+    if study.histories and codes.get("result.h5") == 0:
         row["history"] = ensemble.of_run(folder / "result.h5")
     keep_files(study, row["run"], folder)
     row["program_seconds"] = seconds

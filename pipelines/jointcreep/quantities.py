@@ -9,6 +9,7 @@ from . import histories, reading
 from .errors import NotWanted
 
 NO_EQUILIBRIUM = 3  # exit code of demsolve
+MOVING, UNDECIDED = "blocks move", "undecided"  # what it found then
 
 
 def check(study, scene):
@@ -104,15 +105,33 @@ def needed(study):
     return {name: is_wanted or name in study.keep for name, is_wanted in {"joints.h5": any(wanted.values()), **wanted}.items()}
 
 
-def of_run(study, scene, folder, solve_code):
+def ending(path):
+    """MOVING or UNDECIDED, of the file that demsolve leaves of a run without equilibrium; UNDECIDED if it left none."""
+    try:
+        with h5py.File(path) as file:
+            return MOVING if file["/failure/moves_on"][0] else UNDECIDED
+    except (OSError, KeyError):
+        return UNDECIDED
+
+
+def ending_of(row):
+    """What demsolve found where a run has no equilibrium, MOVING or UNDECIDED, in the first call that found none; "" of other runs."""
+    return next(iter(row["no_equilibrium"].values()), "")
+
+
+def file_of(quantity):
+    """The file of a run that has a quantity."""
+    return {"blocks": "network.h5", "factor of safety": "safety.h5"}.get(quantity.what, "result.h5")
+
+
+def of_run(study, scene, folder, codes, endings):
     """Values of all quantities, None where there is none. The files of the run are in `folder`, as far as its programs have made
-    them; `solve_code` is the exit code of demsolve, None if it was not called."""
+    them; codes, endings: exit codes of demsolve by the file that it makes, and, of code 3, what ending() says."""
     values = []
     for one in study.quantities:
-        name = {"blocks": "network.h5", "factor of safety": "safety.h5"}.get(one.what, "result.h5")
-        value = None
+        name, value = file_of(one), None
         if one.what == "failed":
-            value = {0: 0.0, NO_EQUILIBRIUM: 1.0}.get(solve_code)
+            value = 0.0 if codes.get(name) == 0 else 1.0 if endings.get(name) == MOVING else None
         elif (folder / name).exists():
             with h5py.File(folder / name) as file:
                 if one.what == "displacement":

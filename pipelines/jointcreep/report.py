@@ -16,6 +16,7 @@ import numpy as np
 
 from . import files, intervals, materials, plan, reading, study_file
 from .errors import NotWanted
+from .quantities import MOVING, UNDECIDED
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em; }
@@ -343,13 +344,12 @@ def of_study(out, programs, folder):
     found = plan.parsed((out / "plan.json").read_bytes(), out / "plan.json")
     rows, found_answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
     failed = [row for row in rows if row["exit code"] != "0"]
-    without = [row for row in failed if row["exit code"] == "3"]
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
-        ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium: blocks move", sum(map(answers.is_moving, without))),
-        ("runs without equilibrium: undecided", len(without) - sum(map(answers.is_moving, without))),
+        ("runs with a result", len(rows) - len(failed)),
+        *((f"runs without equilibrium: {what}", sum(row["no equilibrium"] == what for row in rows)) for what in (MOVING, UNDECIDED)),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
         ("runs that were repeated", sum(row["attempts"] != "1" for row in times)), ("processor time of the programs (hours)", hours)])]
     with tempfile.TemporaryDirectory(dir=folder) as work:

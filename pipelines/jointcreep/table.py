@@ -8,9 +8,10 @@ import h5py
 import numpy as np
 
 from . import files
+from .quantities import ending_of
 from .study_file import LEVEL, NETWORK
 
-FORMAT_VERSION = [1, 0]  # of runs.h5
+FORMAT_VERSION = [1, 1]  # of runs.h5
 
 
 def columns_of(study, rows, given):
@@ -20,8 +21,9 @@ def columns_of(study, rows, given):
     columns += [(LEVEL, "1", [study.design.level(run) for run in numbers])] if study.design.fine_runs else []
     columns += [(one.name, "as the key", [given[run]["given"][at] for run in numbers])
                 for at, one in enumerate(study.parameters)]
-    columns += [("exit code", "1", [row["exit_code"] for row in rows]), ("program", "1", [row["program"] for row in rows]),
-                ("reason", "1", [row["reason"] for row in rows])]
+    columns += [("exit code", "1", [row["exit_code"] for row in rows]),
+                ("no equilibrium", "1", [ending_of(row) for row in rows]),
+                ("program", "1", [row["program"] for row in rows]), ("reason", "1", [row["reason"] for row in rows])]
     columns += [(one.title(), one.unit, [row["values"][at] for row in rows]) for at, one in enumerate(study.quantities)]
     return columns
 
@@ -30,7 +32,7 @@ def hdf5_columns(columns, n_values):
     """The columns of the dataset /runs: name, unit, type, values. The last `n_values` have one more each, which says whether there
     is a value; without one it is 0."""
     for place, (name, unit, values) in enumerate(columns):
-        if any(isinstance(value, str) for value in values) or name in (LEVEL, "program", "reason"):
+        if any(isinstance(value, str) for value in values) or name in (LEVEL, "no equilibrium", "program", "reason"):
             coded = [str(value).encode() for value in values]
             yield name, unit, h5py.string_dtype("utf-8", max([1, *map(len, coded)])), coded
         elif place < len(columns) - n_values:

@@ -247,7 +247,7 @@ class Small(Realizations):
     def test_a_failed_one(self):
         """It is named with its reason, and does not stop the others."""
         out = self.made(self.folder / "out", self.programs(f"*/000001) echo '{FAILS}' >&2; exit 3 ;;"))
-        self.assertIn(f"run 1 failed: {FAILS}\n", (out / "summary.txt").read_text())
+        self.assertIn(f"run 1 undecided: {FAILS}\n", (out / "summary.txt").read_text())
         found = datasets(out / "ensemble.h5")
         self.assertEqual((list(found["/run/number"]), list(found["/failed/number"])), ([0, 2, 3], [1]))
         self.assertIn(FAILS, found["/failed/reason"][0])
@@ -255,7 +255,7 @@ class Small(Realizations):
     def test_all_failed(self):
         done = self.make(self.folder / "out", self.programs('*/realizations/work/*) echo "demsolve: no" >&2; exit 3 ;;'))
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("run 0 failed: demsolve: no\n", done.stdout)
+        self.assertIn("run 0 undecided: demsolve: no\n", done.stdout)
         self.assertFalse((self.folder / "out" / "realizations" / "ensemble.h5").exists())
 
     def test_names(self):

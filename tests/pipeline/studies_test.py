@@ -27,6 +27,7 @@ import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
+import jointcreep
 from jointcreep import answers, failure, intervals, materials, plan, plots, runs, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
@@ -354,14 +355,17 @@ class Runs(Studies):
 class Failures(Studies):
     def test_a_failed_run(self):
         """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
-        made twice."""
+        made twice. Blocks that move are told from a search without an answer by the file that is left."""
+        with h5py.File(self.folder / "moving.h5", "w") as file:
+            file["/failure/moves_on"] = [1]
         case = 'case "$PWD" in *work/000001*) echo "demsolve: warning: soon" >&2; echo "demsolve: no equilibrium: on purpose" >&2; ' \
-               'echo "demsolve: the run up to there is in result.failed.h5" >&2; touch result.failed.h5; exit 3 ;; esac'
+               f'echo "demsolve: the run up to there is in result.failed.h5" >&2; cp "{self.folder}/moving.h5" result.failed.h5; exit 3 ;; esac'
         programs = self.programs(case)
         out = self.made(self.written('keep = ["result.failed.h5"]\n' + NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
         self.assertEqual([path.name for path in (out / "kept").iterdir()], ["000001-result.failed.h5"])
         rows = rows_of(out)
         self.assertEqual([row["exit code"] for row in rows], ["0", "3", "0", "0"])
+        self.assertEqual([row["no equilibrium"] for row in rows], ["", "blocks move", "", ""])
         self.assertEqual((rows[1]["program"], rows[1]["reason"]), ("demsolve", "demsolve: no equilibrium: on purpose"))
         self.assertEqual((rows[1]["floor y (mm)"], rows[1]["failed"]), ("", "1.0"))
         self.assertGreater(float(rows[1]["blocks, number"]), 1)  # which the network has all the same
@@ -371,7 +375,7 @@ class Failures(Studies):
             with open(folder / "times.csv", encoding="utf-8") as file:
                 self.assertEqual([row["attempts"] for row in csv.DictReader(file)], ["1", attempts, "1", "1"])
         text = (out / "summary.txt").read_text()
-        self.assertIn("without equilibrium  1\n  blocks move        0\n  undecided          1\n", text)
+        self.assertIn("without equilibrium  1\n  blocks move        1\n  undecided          0\n", text)
         self.assertIn("\nwarning in 1 of 4 runs: demsolve: soon\n", text)
         self.assertTrue(text.endswith("run 1 failed: demsolve: no equilibrium: on purpose\n"
                                       "of the point dug away (mm): an excavation takes the point \"dug away\" before, or it is not read yet, "
@@ -390,6 +394,41 @@ class Failures(Studies):
         self.assertAlmostEqual(float(row["value"]), np.std(values, ddof=1) / np.sqrt(3), delta=1e-12)
         self.assertEqual(float(found["failed", "probability"]["value"]), 0.25)
 
+    def test_an_undecided_run(self):
+        """It is neither stable nor failed: probabilities that depend on it have two rows."""
+        with h5py.File(self.folder / "undecided.h5", "w") as file:
+            file["/failure/moves_on"] = [0]
+        case = f'case "$PWD" in *work/000001*) cp "{self.folder}/undecided.h5" result.failed.h5 ;; *work/000002*) ;; *work/000003*) ' \
+               f'cp "{self.folder}/moving.h5" result.failed.h5 ;; *) exec "{self.chain.programs}/demsolve" "$@" ;; esac; ' \
+               '[ "$1" = --version ] && exec "{{folder}}/demsolve" "$@"; echo "demsolve: no equilibrium: why" >&2; exit 3'
+        with h5py.File(self.folder / "moving.h5", "w") as file:
+            file["/failure/moves_on"] = [1]
+        out = self.made(self.written(NETWORKS.format(runs=6)), self.folder / "out", programs=self.programs(case))
+        rows = rows_of(out)
+        self.assertEqual([row["exit code"] for row in rows], ["0", "3", "3", "3", "0", "0"])
+        self.assertEqual([row["no equilibrium"] for row in rows], ["", "undecided", "undecided", "blocks move", "", ""])
+        self.assertEqual([row["failed"] for row in rows], ["0.0", "", "", "1.0", "0.0", "0.0"])
+        with h5py.File(out / "runs.h5") as file:
+            self.assertEqual(list(file["runs"]["no equilibrium"]), [row["no equilibrium"].encode() for row in rows])
+        study = jointcreep.read(out)
+        self.assertEqual(list(study.runs["no equilibrium"]), [row["no equilibrium"] for row in rows])
+        self.assertEqual(study.answer("probability, at least", "failed"), intervals.probability(1, 6))
+        self.assertEqual(study.answer("probability, at most", "failed"), intervals.probability(3, 6))
+        above = sum(float(row["floor y (mm)"]) > 0.1 for row in rows if row["floor y (mm)"])
+        self.assertEqual(study.answer("probability above 0.1, of stable runs", "floor y"), intervals.probability(above, 3))
+        self.assertEqual(study.answer("probability above 0.1 or no equilibrium, at least", "floor y"), intervals.probability(above + 1, 6))
+        self.assertEqual(study.answer("probability above 0.1 or no equilibrium, at most", "floor y"), intervals.probability(above + 3, 6))
+        text = (out / "summary.txt").read_text()
+        self.assertIn("without equilibrium  3\n  blocks move        1\n  undecided          2\n", text)
+        self.assertIn("warning: 2 of 6 runs ended undecided: whether they have an equilibrium is not known. They have no value; ", text)
+        self.assertRegex(text, "probability of no equilibrium, at least +6 ")
+        self.assertIn("run 1 undecided: demsolve: no equilibrium: why\n", text)
+        self.assertIn("run 3 failed: demsolve: no equilibrium: why\n", text)
+        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        page = (self.folder / "r.html").read_text()
+        for what, count in (("blocks move", 1), ("undecided", 2)):
+            self.assertRegex(page, f"runs without equilibrium: {what}</td><td[^>]*>{count}<")
+
     def test_a_run_that_fails_once(self):
         """Its results are those of a run that never did."""
         study = self.written(NETWORKS.format(runs=3))
@@ -404,15 +443,16 @@ class Failures(Studies):
         undecided = "demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016; " + "word " * 300
         rows = [{"run": run, "exit_code": 3 if run < 12 else 0, "program": "demsolve" if run < 12 else "", "values": [None] * 4 + [1.0],
                  "reason": "" if run >= 12 else moving if run % 4 else undecided,
+                 "no_equilibrium": {"result.h5": "blocks move" if run % 4 else "undecided"} if run < 12 else {},
                  "warnings": [f'jointgen: {50 + run}.5 percent of joint set "J1" are cut back'] * (run % 2)} for run in range(30)]
         text = answers.summary(study, rows, "", [], [])
         self.assertIn("without equilibrium  12\n  blocks move        9\n  undecided          3\n", text)
         self.assertIn('\nwarning in 15 of 30 runs: jointgen: 51.5 percent of joint set "J1" are cut back\n', text)
         lines = [line for line in text.splitlines() if line.startswith("run ")]
-        self.assertEqual(lines[:2], ["run 0 failed: demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016",
+        self.assertEqual(lines[:2], ["run 0 undecided: demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016",
                                      "run 1 failed: demsolve: no equilibrium: the rock is moving"])
         self.assertEqual(text.splitlines()[text.splitlines().index(lines[-1]) + 1], "and 2 more in runs.csv")
-        self.assertEqual(len([line for line in lines if " failed: " in line]), 10)
+        self.assertEqual(len([line for line in lines if " failed: " in line or " undecided: " in line]), 10)
         many = answers.failure_words({**rows[0], "reason": "demsolve: " + "word " * 300})
         self.assertLess(len(many), 130)
 
@@ -423,7 +463,8 @@ class Failures(Studies):
         study = study_file.read(self.written(NETWORKS.format(runs=8) + vary))
         values = [(1, 1, 3), (2, 2, 1), (3, 3, 6), (4, 4, 2), (5, 5, 5), (6, 6, 4), (1, 2, 3), (4, 3, 1)]
         given = {run: {"run": run, "network": run, "given": list(of)} for run, of in enumerate(values)}
-        rows = [{"run": run, "exit_code": 0, "program": "", "reason": "", "values": [0.1, 0.2, 0.3, 9, 0], "warnings": []} for run in given]
+        rows = [{"run": run, "exit_code": 0, "program": "", "reason": "", "values": [0.1, 0.2, 0.3, 9, 0],
+                 "no_equilibrium": {}, "warnings": []} for run in given]
         pair, r, n = answers.chance_correlation(study, rows, given)
         self.assertEqual((pair, n), (("a", "b"), 8))
         self.assertGreater(r, 0.9)
@@ -492,7 +533,7 @@ class Failures(Studies):
         for row in rows_of(out):
             self.assertEqual((row["exit code"], row["program"], row["F, lower end"]), ("3", "demsolve", ""))
             self.assertEqual(row["reason"], "demsolve: with strengths 64 times as large there is still no equilibrium: on purpose")
-        self.assertIn("run 1 failed: demsolve: with strengths 64 times as large", (out / "summary.txt").read_text())
+        self.assertIn("run 1 undecided: demsolve: with strengths 64 times as large", (out / "summary.txt").read_text())
         self.refused('keep = ["safety.failed.h5"]\n' + NETWORKS.format(runs=2), "for safety.failed.h5")
 
     def test_what_is_no_result(self):
@@ -673,15 +714,16 @@ values = [1, 2, 6]
         study = study_file.read(self.written(text))
         friction = chance.normal(size=parameters)
         table = 5 * chance.normal(size=(networks, 1)) + np.arange(parameters)[np.argsort(np.argsort(friction))]
-        rows = [{"run": run, "values": [value, None, None, None, 0.0], "exit_code": 0, "reason": "", "program": ""}
+        rows = [{"run": run, "values": [value, None, None, None, 0.0], "exit_code": 0, "reason": "", "program": "", "no_equilibrium": {}}
                 for run, value in enumerate(table.ravel().tolist())]
         for run in (0, 3, 14):
-            rows[run].update(values=[None] * 4 + [1.0], exit_code=3, program="demsolve", reason="demsolve: no equilibrium")
+            rows[run].update(values=[None] * 4 + [1.0], exit_code=3, program="demsolve", reason="demsolve: no equilibrium",
+                             no_equilibrium={"result.h5": "blocks move"})
         given = [{"given": [friction[run % parameters]]} for run in range(len(rows))]
         values, run = answers.values_of(study, rows, 0)
-        without = answers.without_equilibrium(study, rows, 0)
-        self.assertEqual(list(without), [0, 3, 14])
-        found = {name: row for name, *row in answers.statistics(study, study.quantities[0], values, run, None, without)}
+        others = answers.no_value(study, rows, 0)
+        self.assertEqual((list(others.moving), others.undecided), ([0, 3, 14], None))
+        found = {name: row for name, *row in answers.statistics(study, study.quantities[0], values, run, None, others)}
         there = np.delete(table.ravel(), [0, 3, 14])
         self.assertEqual(found["mean"][0], 69)
         self.assertAlmostEqual(found["mean"][1], there.mean(), places=12)
@@ -1108,7 +1150,8 @@ class FactorsOfSafety(Studies):
         text = NETWORKS.split("[[collect]]")[0].format(runs=len(brackets)) + '[[collect]]\nname = "F"\nwhat = "factor of safety"\n' \
             'above = [2]\nbelow = [1.4]\n'
         study, out = study_file.read(self.written(text)), self.chain.new_folder()
-        rows = [{"run": run, "network": run, "exit_code": 0, "program": "", "reason": "", "values": list(ends), "warnings": []}
+        rows = [{"run": run, "network": run, "exit_code": 0, "program": "", "reason": "", "values": list(ends), "warnings": [],
+                 "no_equilibrium": {}}
                 for run, ends in enumerate(brackets)]
         given = {row["run"]: {"run": row["run"], "network": row["run"], "given": []} for row in rows}
         found = answers.write(study, rows, given, "", [], [], out)
