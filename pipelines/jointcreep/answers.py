@@ -20,7 +20,7 @@ from . import failure, files, intervals
 from .design import openturns
 from .intervals import CONFIDENCE
 from .quantities import MOVING, NO_EQUILIBRIUM, UNDECIDED, ending_of, file_of
-from .study_file import ENDS, EXTENSIBLE, NETWORK
+from .study_file import BY_STOP_RULE, ENDS, EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CORRELATION = "rank correlation"  # a measure in shares.csv
@@ -61,12 +61,17 @@ def values_of(study, rows, at):
     value = {row["run"]: value_of(study, row, at) for row in rows if value_of(study, row, at) is not None}
     there = sorted(value)
     if study.design.fine_runs:
-        last = rows[-1]["run"] if rows else -1
-        there = [run for run in there if study.design.level(run) == "fine" and run + study.design.coarse_per_fine <= last and
-                 run + 1 in value]
+        whole = whole_blocks(study, rows)
+        there = [run for run in there if run in whole and run + 1 in value]
     elif study.design.kind == "sobol indices":
         there = [run for run in there if run < 2 * study.design.points]
     return np.array([value[run] for run in there], float), np.array(there, int)
+
+
+def whole_blocks(study, rows):
+    """Fine runs of two levels whose block has all its runs."""
+    ended = {row["run"] for row in rows}
+    return {run for run in ended if study.design.level(run) == "fine" and ended.issuperset(range(run, run + study.design.block()))}
 
 
 def coarse_of(study, rows, at, run):
@@ -82,9 +87,8 @@ def coarse_of(study, rows, at, run):
 def counted_runs(study, rows, is_one):
     """Numbers of runs for which is_one(row) holds, of those that values_of() may have."""
     last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
-    if study.design.fine_runs and rows:
-        last = (rows[-1]["run"] + 1) // study.design.block() * study.design.block()
-    return np.array([row["run"] for row in rows if is_one(row) and row["run"] < last and study.design.level(row["run"]) != "coarse"], int)
+    counted = whole_blocks(study, rows) if study.design.fine_runs else range(last)
+    return np.array([row["run"] for row in rows if row["run"] in counted and is_one(row)], int)
 
 
 @dataclasses.dataclass
@@ -467,9 +471,10 @@ def level_costs(study, rows):
     """What two levels cost, as rows: quantity, processor seconds of a fine and of a coarse run, their correlation, the number of coarse
     runs for each fine one that is cheapest (Pasupathy and others 2012), and the time of this study over that of plain sampling by fine
     runs for as narrow an interval."""
-    seconds = [float(np.mean([row["processor_seconds"] for row in rows if study.design.level(row["run"]) == level]))
-               for level in ("fine", "coarse")]
-    found = []
+    of_levels = [[row["processor_seconds"] for row in rows if study.design.level(row["run"]) == level] for level in ("fine", "coarse")]
+    if not all(of_levels):
+        return []
+    seconds, found = [float(np.mean(one)) for one in of_levels], []
     for at, quantity in enumerate(study.quantities):
         values, run = values_of(study, rows, at)
         coarse = coarse_of(study, rows, at, run)
@@ -545,6 +550,13 @@ def strength_factors(study):
     return list(dict.fromkeys(factors))
 
 
+def early_words(study, rows, why):
+    """A warning of answers that runs are missing from."""
+    if why in ("", BY_STOP_RULE) or study.design.directions:
+        return []
+    return [f"warning: the answers are of {len(rows)} of {study.design.runs} runs. Runs that take long may be missing more often than others"]
+
+
 def undecided_words(study, rows):
     """A warning of runs that ended undecided, which says how they are counted."""
     count = sum(ending_of(row) == UNDECIDED for row in rows)
@@ -610,7 +622,7 @@ def summary(study, rows, why, of_each, of_histories, of_chance=None):
                                    for name, measure, *numbers in of_shares if measure == CORRELATION)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
     lines += [""] * bool(of_histories) + of_histories
-    notes = too_large + undecided_words(study, rows) + reduced_words(study) + warning_words(rows)
+    notes = too_large + early_words(study, rows, why) + undecided_words(study, rows) + reduced_words(study) + warning_words(rows)
     if not study.design.directions:
         notes = incomplete_words(study, rows) + notes + missing_words(study, rows)
     return "\n".join(lines + [""] * bool(notes) + notes) + "\n"

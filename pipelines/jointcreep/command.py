@@ -156,45 +156,57 @@ def study(source, options, beside):
     profile = options.get("snakemake")
     if profile and not (pathlib.Path(profile) / "config.yaml").exists():
         raise NotWanted(f"--snakemake: {profile} has no config.yaml; expected the folder of a profile")
-    out = pathlib.Path(options["output"]).resolve()
+    out, quiet = pathlib.Path(options["output"]).resolve(), options.get("quiet", False)
     with runs.locked(out) as lock:
-        scene = plan.make(of_study, out, programs)
+        plan.make(of_study, out, programs)
         from . import answers  # after the study is known to be right: it takes longer to load
         try:
             with runs.stoppable():
                 rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
-                                      options.get("quiet", False), lambda rows: answers.enough(of_study, rows), lock)
+                                      quiet, lambda rows: answers.enough(of_study, rows), lock)
         except KeyboardInterrupt as error:
-            raise runs.Stopped(runs.exit_code_of(error), write_ended(of_study, out)) from None
-        return finish(of_study, out, rows, why, scene, options.get("quiet", False))
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # what follows takes a moment only, and then all ends
+            raise runs.Stopped(runs.exit_code_of(error), finish_early(of_study, out, "by a signal", quiet)) from None
+        except NotDone as error:
+            raise NotDone(f"{error}\n{finish_early(of_study, out, 'without runs that could not be made', quiet)}") from None
+        return finish(of_study, out, rows, why, quiet)
 
 
-def write_ended(of_study, out):
-    """Writes the table of the runs that have ended in a study that was stopped; says how many."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # this takes a moment only, and then all ends
-    rows = [row for run, row in sorted(runs.read_rows(out).items()) if run >= 0]
-    if not rows:
+def finish_early(of_study, out, why, quiet):
+    """Tables and answers of the runs that have ended in a study that was stopped, or lacks runs; says how many. Without bands of
+    histories and pictures, so that a report waits until the study has ended."""
+    rows = [row for run, row in sorted(runs.read_rows(out).items()) if run < of_study.design.runs or of_study.design.directions]
+    count = sum(row["run"] >= 0 for row in rows)
+    if not count:
         return "no run has ended"
-    (out / "summary.txt").unlink(missing_ok=True)  # of fewer runs, from an earlier call: a report would mix the two
-    table.write(of_study, rows, plan.given(out, of_study, rows), (out / "scene.toml").read_text("utf-8"), out)
+    (out / "pictures.json").unlink(missing_ok=True)  # of fewer runs, from an earlier call: a report would mix the two
+    write_answers(of_study, out, rows, why, quiet, False)
     of = "" if of_study.design.directions else f" of {of_study.design.runs}"
-    return f"{len(rows)}{of} runs have ended; their results are in {out / 'runs.csv'}"
+    return f"{count}{of} runs have ended; their results are in {out / 'runs.csv'}, the answers of these runs in {out / 'summary.txt'}"
 
 
-def finish(of_study, out, rows, why, scene, quiet):
-    """Tables, answers and pictures of the runs."""
-    from . import answers, ensemble, pictures
+def write_answers(of_study, out, rows, why, quiet, with_histories):
+    """Writes tables and answers of the runs, and prints the summary. Returns rows and design as pictures.write() takes them, what was
+    found, and whether the study has answers. why: it ended before all runs, "" with all; with_histories: also statistics of histories."""
+    from . import answers, ensemble
     estimates = [row["probability"] for row in rows if row["run"] < 0]
     rows = [row for row in rows if row["run"] >= 0]
     given, text = plan.given(out, of_study, rows), (out / "scene.toml").read_text("utf-8")
     table.write(of_study, rows, given, text, out)
-    of_histories = ensemble.write(rows, text, out) if of_study.histories else []
+    of_histories = ensemble.write(rows, text, out) if with_histories else []
     found = answers.write(of_study, rows, given, why, estimates, of_histories, out)
     costs = answers.write_costs(of_study, rows, out) if of_study.design.fine_runs else []
-    pictures.write(of_study, rows, given, found, out)
     if not quiet:
-        print((out / "summary.txt").read_text("utf-8"), *costs, sep="", end="")
-    return 0 if (of_histories if of_study.histories else found) else 3
+        print((out / "summary.txt").read_text("utf-8"), *costs, sep="", end="", flush=True)
+    return rows, given, found, bool(of_histories if with_histories else found)
+
+
+def finish(of_study, out, rows, why, quiet):
+    """Tables, answers and pictures of the runs. Returns the exit code."""
+    from . import pictures
+    rows, given, found, has_answers = write_answers(of_study, out, rows, why, quiet, of_study.histories)
+    pictures.write(of_study, rows, given, found, out)
+    return 0 if has_answers else 3
 
 
 def report(source, options, beside):

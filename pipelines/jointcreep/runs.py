@@ -15,7 +15,7 @@ import subprocess
 import sys
 import time
 
-from . import files, group, plan
+from . import files, group, plan, study_file
 from .errors import NotDone, NotWanted
 
 PATIENCE = 5  # s to wait for processes of a study that was killed
@@ -302,5 +302,5 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
             name = plan.group_name(len(prefix) // size)
             raise NotDone(f"{out / 'groups' / name}.rows lacks run {len(prefix)}: remove this file; the same command makes it again")
         if study.stop.of and enough(prefix):
-            return prefix, "by the stop rule"
+            return prefix, study_file.BY_STOP_RULE
     return prefix, ""

@@ -39,6 +39,7 @@ LEVEL = "level"  # name of the column that says whether a run of "two levels" is
 RESERVED = {"run", NETWORK, LEVEL, "exit code", "no equilibrium", "program", "reason"}
 KEPT = ["network.h5", "joints.h5", "result.h5", "result.failed.h5", "safety.h5", "safety.failed.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
+BY_STOP_RULE = "by the stop rule"  # why a study ended before all its runs
 LIKE = 0.75  # of two keys, by difflib: more than of any two that are known, such as fine_runs and fine_options (0.67)
 
 

@@ -133,6 +133,17 @@ class Studies(ChainTest):
         for name in RESULTS:
             self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
 
+    def assert_early(self, out, summary, runs_planned, why):
+        """What a study says and keeps that ended before all its runs."""
+        values = [float(row["floor y (mm)"]) for row in rows_of(out)]
+        self.assertIn(f"\nruns                 {len(values)} of {runs_planned}, ended {why}\n", summary)
+        self.assertIn(f"\nwarning: the answers are of {len(values)} of {runs_planned} runs. ", summary)
+        self.assertEqual((out / "summary.txt").read_text(), summary)
+        with open(out / "answers.csv", encoding="utf-8") as file:
+            row = next(row for row in csv.DictReader(file) if (row["quantity"], row["statistic"]) == ("floor y", "mean"))
+        self.assertEqual(row["runs"], str(len(values)))
+        self.assertEqual([float(row[name]) for name in ("value", "low", "high")], list(intervals.mean(values)[:3]))
+
 
 def rows_of(out):
     with open(out / "runs.csv", encoding="utf-8", newline="") as file:
@@ -243,7 +254,7 @@ class Runs(Studies):
         self.assert_same(whole, self.made(study, out, "-j2"))
 
     def test_stopped(self):
-        """Ctrl-C or SIGTERM: runs.csv has the runs that have ended, and the message has the command that continues."""
+        """Ctrl-C or SIGTERM: the tables and answers have the runs that have ended, and the message has the command that continues."""
         study = self.written(NETWORKS.format(runs=12))
         with open(self.made(study, self.folder / "whole") / "runs.csv", encoding="utf-8") as file:
             whole = list(csv.reader(file))
@@ -258,8 +269,9 @@ class Runs(Studies):
                 self.assertLess(time.monotonic(), end)
                 time.sleep(0.01)
             os.kill(running.pid, number)
-            _, said = running.communicate(timeout=LONGEST_RUN)
+            summary, said = running.communicate(timeout=LONGEST_RUN)
             self.assertEqual(running.returncode, 128 + number, said)
+            self.assert_early(out, summary, 12, "by a signal")
             with open(out / "runs.csv", encoding="utf-8") as file:
                 rows = list(csv.reader(file))
             self.assertGreaterEqual(len(rows), 8)
@@ -267,7 +279,8 @@ class Runs(Studies):
             self.assertLess(len(rows), len(whole))
             for row in rows[1:]:
                 self.assertIn(row, whole)
-            self.assertIn(f"{len(rows) - 1} of 12 runs have ended; their results are in {out / 'runs.csv'}\n", said)
+            self.assertIn(f"{len(rows) - 1} of 12 runs have ended; their results are in {out / 'runs.csv'}, the answers of these runs in "
+                          f"{out / 'summary.txt'}\n", said)
             continues = said.splitlines()[-1].removeprefix("jointcreep: to continue: ")
             self.assertEqual(shlex.split(continues), ["jointcreep", *command[1:]])
             refused = subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"],
@@ -546,7 +559,8 @@ class Failures(Studies):
                 done = self.study(study, out, programs=self.programs(f'case "$PWD" in *work/000001*) {what} ;; esac'))
                 self.assertEqual(done.returncode, 4)
                 self.assertIn("run 1: demsolve was stopped", done.stderr)
-                self.assertFalse((out / "runs.csv").exists())
+                self.assert_early(out, done.stdout, 3, "without runs that could not be made")
+                self.assertIn(f"\n2 of 3 runs have ended; their results are in {out / 'runs.csv'}", done.stderr)
                 self.assert_same(whole, self.made(study, out))
 
     def test_all_failed(self):
