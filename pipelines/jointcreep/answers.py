@@ -27,6 +27,7 @@ CORRELATION = "rank correlation"  # a measure in shares.csv
 ALL_PARAMETERS = "all parameters"  # an input in shares.csv
 NOT_LINEAR = "parameters, not linear or together"  # what no parameter explains alone
 SETS_EACH = 4  # sets of parameters for each parameter, so that their share is divided
+OF_STABLE, OR_NONE = ", of stable runs", " or no equilibrium"  # ends of names of probabilities
 FEWEST = 10  # values from which convergence is shown
 FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
@@ -165,7 +166,7 @@ def limits_of(quantity):
                 return values > limit if side == "above" else values < limit
             name = f"probability {side} {limit:g}"
             if quantity.what == "displacement":
-                found += [(f"{name}, of stable runs", hit, None), (f"{name} or no equilibrium", hit, True)]
+                found += [(name + OF_STABLE, hit, None), (name + OR_NONE, hit, True)]
             else:  # without equilibrium, even with the largest strengths, a factor of safety is below all limits
                 found.append((name, hit, side == "below" if quantity.what == "factor of safety" else None))
     return found

@@ -45,12 +45,26 @@ def distribution(quantity, study, values, beyond=0):
     return plot
 
 
+def panels_of(rows):
+    """Rows (runs, value, low, high) of the panels of convergence() by their names. Without runs that have no equilibrium a probability of
+    stable runs is that of all runs, and has one panel."""
+    of = {}
+    for name, *row in rows:
+        of.setdefault(name, []).append(row)
+    for name in [name for name in of if name.endswith(answers.OF_STABLE)]:
+        limit = name.removesuffix(answers.OF_STABLE)
+        if of.get(limit + answers.OR_NONE) == of[name]:
+            of = {limit if one == name else one: own for one, own in of.items() if one != limit + answers.OR_NONE}
+    return of
+
+
 def convergence(quantity, rows, stop, counted, order=""):
     """Statistics over the number of runs, each with its interval. order: words on the order of the runs."""
-    names = list(dict.fromkeys(name for name, *_ in rows))
+    of_panels = panels_of(rows)
+    names = list(of_panels)
     plot, panels = figure.plt.subplots(len(names), 1, figsize=(figure.ONE_COLUMN, 0.6 + 1.7 * len(names)), squeeze=False, sharex=True)
     for axes, name in zip(panels[:, 0], names):
-        of = [(runs, value, low, high) for statistic, runs, value, low, high in rows if statistic == name and low is not None]
+        of = [(runs, value, low, high) for runs, value, low, high in of_panels[name] if low is not None]
         if not of:
             continue
         runs, value, low, high = map(np.array, zip(*of))

@@ -407,6 +407,22 @@ class Failures(Studies):
         self.assertAlmostEqual(float(row["value"]), np.std(values, ddof=1) / np.sqrt(3), delta=1e-12)
         self.assertEqual(float(found["failed", "probability"]["value"]), 0.25)
 
+    def test_panels_of_convergence(self):
+        """Two probabilities of the same limit that are the same have one panel; those of different limits have two."""
+        from jointcreep import pictures
+        text = NETWORKS.format(runs=20).replace("above = [0.1]", "above = [0.1, 0.2]")
+        study = study_file.read(self.written(text))
+        rows = [{"run": run, "exit_code": 0, "program": "", "reason": "", "values": [0.01 * run, None, None, None, 0.0], "no_equilibrium": {}}
+                for run in range(20)]
+        above = ["probability above 0.1", "probability above 0.2"]
+        self.assertEqual(list(pictures.panels_of(answers.convergence(study, rows, 0))), ["mean", *above])
+        picture = pictures.convergence(study.quantities[0], answers.convergence(study, rows, 0), study.stop, "runs")
+        self.assertEqual([axes.get_ylabel().replace("\n", " ") for axes in picture.axes],
+                         ["mean of floor y (mm)", *(f"{name} mm (percent)" for name in above)])
+        rows[7].update(exit_code=3, values=[None] * 4 + [1.0], no_equilibrium={"result.h5": "blocks move"})
+        both = [name + end for name in above for end in (", of stable runs", " or no equilibrium")]
+        self.assertEqual(list(pictures.panels_of(answers.convergence(study, rows, 0))), ["mean", *both])
+
     def test_an_undecided_run(self):
         """It is neither stable nor failed: probabilities that depend on it have two rows."""
         with h5py.File(self.folder / "undecided.h5", "w") as file:
