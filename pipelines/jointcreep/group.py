@@ -16,6 +16,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import resource
 import shutil
 import signal
@@ -32,6 +33,9 @@ SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  
 UP_TO_THERE = "the run up to there is "  # where demsolve has left a file, which goes with the others of the run
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
+SAID = "said.txt"  # in the folder of a run: what the program that works there has written to stderr
+# Progress of demsolve there, which is no message: "run 4, strengths / 1.5: fails; ...", "33%, 8 s left: ...", "strengths / 1.5 (...".
+PROGRESS = re.compile(r"demsolve: (run \d+, strengths |strengths [/x] |\d+%(, \d+ (s|min|h) left)?: )")
 
 
 def die_with(parent):
@@ -65,14 +69,16 @@ def processor_seconds():
 
 
 def called(program, arguments, folder):
-    """Exit code, message, warnings and wall time [s] of a program."""
+    """Exit code, message, warnings and wall time [s] of a program. What it says is in SAID, where the study can read it meanwhile."""
     begin, parent = time.monotonic(), os.getpid()
     try:
-        done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, preexec_fn=lambda: die_with(parent))
+        with open(folder / SAID, "w+b") as said:
+            done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said,
+                                  preexec_fn=lambda: die_with(parent))
+            said.seek(0)
+            lines = [line for line in said.read().decode("utf-8", "replace").splitlines() if not PROGRESS.match(line)]
     except OSError as error:
         raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
-    lines = done.stderr.decode("utf-8", "replace").splitlines()
     warnings = [line.replace(": warning: ", ": ", 1) for line in lines if ": warning: " in line]
     lines = [line for line in lines if ": warning: " not in line and not line.removeprefix(f"{program.name}: ").startswith(UP_TO_THERE)]
     lines = lines[:1] + [line.removeprefix(f"{program.name}: ") for line in lines[1:]]
@@ -93,7 +99,7 @@ def made(study, scene, text, run, programs, folder):
     for name, arguments in programs_of(study, run["run"]):
         if name == "jointgen":
             arguments = [*arguments, "--realization", str(run["network"])]
-        code, message, warnings, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
+        code, message, warnings, took = called(programs / name, ["--quiet", *arguments] if "result.h5" in arguments else arguments, folder)
         seconds += took
         row["warnings"] += warnings
         if was_stopped(code) or code == FAILED_INSIDE and "out of memory" in message:

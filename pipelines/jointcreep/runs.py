@@ -5,14 +5,18 @@ last of them. Whatever has ended stays, and the same command continues from ther
 """
 
 import contextlib
+import dataclasses
 import fcntl
 import itertools
 import os
 import pathlib
+import re
+import shutil
 import signal
 import statistics
 import subprocess
 import sys
+import textwrap
 import time
 
 from . import files, group, plan, study_file
@@ -22,6 +26,8 @@ PATIENCE = 5  # s to wait for processes of a study that was killed
 LOOKS = 0.5  # s between two looks at how far the runs are
 SPOKEN = 10  # lines of progress where there is no terminal, or
 SILENT = 60  # s, after which there is one in any case
+LONG = 10  # s from which something is said of runs that have not ended
+CLOCKS = 1  # s by which the clocks of files and of this machine may differ
 TIMED_OUT = "timed out"
 
 MAKEFILE = """# The groups of runs of a study; jointcreep study calls it. Names nothing of the scene.
@@ -160,6 +166,38 @@ class Ended:
         return list(self.seconds.values())
 
 
+@dataclasses.dataclass
+class Present:
+    """The runs that are made at present."""
+    count: int = 0
+    longest: float = 0.0  # time of the one that was begun first [s]
+    bracket: str = ""  # what its search knows of the factor of safety; "" without one
+
+    def __str__(self):
+        """ "; 2 runs at present, the longest for 35 min, factor of safety at least 1, below 1.5"; "" where no run takes long."""
+        if self.longest < LONG:
+            return ""
+        runs = "1 run at present, for" if self.count == 1 else f"{self.count} runs at present, the longest for"
+        return f"; {runs} {duration(self.longest)}" + f", factor of safety {self.bracket}" * bool(self.bracket)
+
+
+def present_runs(out, since):
+    """The Present of a study's folder: runs that were begun after `since` [s, as time.time()]; folders of earlier ones were left by a study
+    that was killed."""
+    begun = []
+    for scene in (out / "work").glob("*/scene.toml"):  # the first file of a run
+        with contextlib.suppress(OSError):
+            begun.append((scene.stat().st_mtime, scene.with_name(group.SAID)))
+    begun = sorted(one for one in begun if one[0] >= since)
+    if not begun:
+        return Present()
+    said = ""
+    with contextlib.suppress(OSError):
+        said = begun[0][1].read_text("utf-8", errors="replace")
+    found = re.findall(r"^demsolve: run \d+, strengths .*?; factor of safety ([^;\n]+)", said, re.MULTILINE)
+    return Present(len(begun), time.time() - begun[0][0], found[-1] if found else "")
+
+
 class Progress:
     """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. The time left is by the median
     of the runs that ended with a result, and by how many are made at once: one that fails soon is no sign that others are as fast. Where
@@ -181,8 +219,8 @@ class Progress:
         since, before = [one for one in self.ended if one[1] <= (first + done) / 2][-1]
         return (now - since) / (done - before) * (self.total - done) if done > first else None
 
-    def tell(self, done, seconds=()):
-        """done: how many have ended; seconds: as Ended.look() has them."""
+    def tell(self, done, seconds=(), present=""):
+        """done: how many have ended; seconds: as Ended.look() has them; present: what is said of the Present."""
         self.seconds = seconds
         if not self.ended:
             self.told = done
@@ -192,8 +230,11 @@ class Progress:
             return
         left = self.seconds_left()
         line = f"{done} of {self.total} {self.what}" + (f", {duration(left)} left" if left is not None and done < self.total else "")
+        line += str(present) if done < self.total else ""
         if sys.stderr.isatty():
-            print(f"\r{line:60}", end="" if done < self.total else "\n", file=sys.stderr, flush=True)
+            width = shutil.get_terminal_size().columns - 1
+            print(f"\r{textwrap.shorten(line, width, placeholder=' ...'):{width}}", end="" if done < self.total else "\n", file=sys.stderr,
+                  flush=True)
         elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told or time.monotonic() - self.spoke > SILENT:
             self.told, self.spoke = done, time.monotonic()
             print(line, file=sys.stderr, flush=True)
@@ -282,7 +323,7 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
     deadline = time.monotonic() + 3600 * study.stop.hours
     in_groups = study.design.directions > 0
     progress = Progress(total, "replicates" if in_groups else "runs", quiet, jobs)
-    durations = Ended(out)
+    durations, begin = Ended(out), time.time() - CLOCKS
     batch = plan.BATCH if study.stop.of else total
     for end in [*range(batch, total, batch), total]:
         before = end - batch if end < total else 0
@@ -290,7 +331,7 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
         ended = make_groups(out, programs, names, jobs, profile, lock, deadline,
                             lambda before=before, names=names, end=end: progress.tell(
                                 min(end, before + count_ended(out, names, size, in_groups)),
-                                [] if in_groups else durations.look(names)))
+                                [] if in_groups else durations.look(names), present_runs(out, begin)))
         rows = read_rows(out)
         if in_groups:
             prefix = [rows[run] for run in sorted(rows)]

@@ -5,9 +5,11 @@ it is not installed.
 """
 
 import base64
+import contextlib
 import csv
 import html
 import importlib.util
+import io
 import os
 import pathlib
 import random
@@ -537,6 +539,42 @@ class Failures(Studies):
                 now[0] += 20 if done <= 10 else 1
                 progress.tell(done)
             self.assertAlmostEqual(progress.seconds_left(), 60)
+
+    def test_runs_at_present(self):
+        """How many there are, since when the longest is made, and what its search knows; runs of a killed study do not count."""
+        out = self.chain.new_folder()
+        now = time.time()
+        self.assertEqual(str(runs.present_runs(out, now)), "")
+        for name, age in (("000000", 9000), ("000001", 2100), ("000002", 20)):
+            folder = out / "work" / name
+            folder.mkdir(parents=True)
+            (folder / "scene.toml").touch()
+            os.utime(folder / "scene.toml", (now - age, now - age))
+        self.assertEqual(str(runs.present_runs(out, now - 5000)), "; 2 runs at present, the longest for 35 min")
+        said = ["demsolve: run 1, strengths x 64: stable, for comparison", "demsolve: run 2, strengths / 1: stable; factor of safety at least 1"]
+        for lines, words in ((said[:1], ""), (said, ", factor of safety at least 1"), ([*said, "demsolve: 33%, 8 s left: strengths / 2 (factor "
+                             "of safety at least 1), bench 3"], ", factor of safety at least 1"), ([*said, "demsolve: run 3, strengths / 2: "
+                             "fails; factor of safety at least 1, below 2; at most 5 more runs"], ", factor of safety at least 1, below 2")):
+            (out / "work" / "000001" / "said.txt").write_text("\n".join(lines) + "\n")
+            self.assertEqual(str(runs.present_runs(out, now - 5000)), f"; 2 runs at present, the longest for 35 min{words}")
+        self.assertEqual(str(runs.present_runs(out, now - 50)), "; 1 run at present, for 20 s")
+        self.assertEqual(str(runs.present_runs(out, now - 5)), "")
+
+    def test_a_long_search(self):
+        """Its bracket is in the line of progress; the lines of its progress are no message of a run that fails."""
+        case = 'case "$*" in *--factor-of-safety*) echo "demsolve: run 1, strengths x 64: stable, for comparison" >&2; ' \
+               'echo "demsolve: run 2, strengths / 1: stable; factor of safety at least 1" >&2; echo "demsolve: 33%: strengths / 2 (factor of ' \
+               'safety at least 1), bench 3" >&2; sleep 2; echo "demsolve: on purpose" >&2; exit 5 ;; esac'
+        text = NETWORKS.split("[[collect]]")[0].format(runs=2) + '[[collect]]\nwhat = "blocks"\nstatistic = "number"\n' \
+            '[[collect]]\nname = "F"\nwhat = "factor of safety"\n'
+        study, out = study_file.read(self.written(text)), self.folder / "out"
+        programs, told = self.programs(case), io.StringIO()
+        with unittest.mock.patch.object(runs, "LONG", 0.5), unittest.mock.patch.object(runs, "SILENT", 0.5), \
+                contextlib.redirect_stderr(told), runs.locked(out) as lock:
+            plan.make(study, out, programs)
+            rows, _ = runs.make(study, out, programs, 2, None, False, None, lock)
+        self.assertRegex(told.getvalue(), r"0 of 2 runs; 2 runs at present, the longest for \d s, factor of safety at least 1\n")
+        self.assertEqual(rows[0]["reason"], "demsolve: on purpose")
 
     def test_times_of_runs(self):
         """They are read as they come, each once, also where the file of a group gets its final name."""
