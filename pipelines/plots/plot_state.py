@@ -22,7 +22,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 import figure
 from stage_names import plain
-from suited import surroundings
+from suited import enlarged
 
 MOVING = "#dfaaa0"  # fill of moving blocks
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
@@ -330,10 +330,10 @@ def length_text(metres):
     return f"{metres:.3g} m" if metres >= 1 else f"{1e3 * metres:.3g} mm"
 
 
-def draw_failure(file, section, axes):
+def draw_failure(file, section, axes, fills=""):
     """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
     arrows are in proportion to their motion; the fastest one's is as long as the moving blocks together, within 3 and 10 percent of
-    the picture. Returns legend entries."""
+    the picture. fills: what the legend says of them in addition. Returns legend entries."""
     entries = []
     block = figure.array(file, "/mesh/zone_block")[section.there]
     stage = figure.texts(file, "/failure/stage")[0]
@@ -363,7 +363,7 @@ def draw_failure(file, section, axes):
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
         label += f" (red arrows, on a scale of their own; the longest is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
-    entries[-1].set_label(label)
+    entries[-1].set_label(label + fills)
     return entries
 
 
@@ -387,7 +387,7 @@ def draw_unbalanced(file, section, axes):
 
 def window_of_failure(file, section):
     """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]; where none moves, of the largest
-    unbalanced force. None if they are a large part of the section, or nothing is known."""
+    unbalanced force. None if the blocks fill the section, or nothing is known."""
     block = figure.array(file, "/mesh/zone_block")[section.there]
     moving = np.isin(block, figure.array(file, "/failure/block")) if "/failure" in file else []
     if not np.any(moving):
@@ -397,19 +397,21 @@ def window_of_failure(file, section):
         low, high = corners.min(axis=0), corners.max(axis=0)
         half = ROUND_A_FORCE / 2 * np.max(high - low)
         return [*np.maximum(low, place - half), *np.minimum(high, place + half)]
-    return surroundings(section.position[section.zones[moving]].reshape(-1, 2), section.position)
+    return enlarged(section.position[section.zones[moving]].reshape(-1, 2), section.position)
 
 
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
          limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some and they
-    are small; limits: low, high of the colour scale."""
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some; limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, state)
+    fills = ""
     if around_failure:
         window = window_of_failure(file, Section(file, state, magnify)) or window
+        if window is None and "/failure" in file and len(figure.array(file, "/failure/block")):
+            fills = "; these fill most of the section"
     section = Section(file, state, magnify, window, since_reset)
     plot, axes = figure.section_axes(section.start, window)
     plot.cuts_margins = True  # scales and legends leave margins of different widths
@@ -440,7 +442,7 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     title = f"Strengths / {factor:.4g}: {title}" if factor != 1 else title
     plot.says_factor = True
     if is_end:
-        entries += draw_failure(file, section, axes) + draw_unbalanced(file, section, axes)
+        entries += draw_failure(file, section, axes, fills) + draw_unbalanced(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
         title += f"\n{reason}"
     lines = [part for line in title.splitlines() for part in figure.wrapped(line, int(15 * plot.get_figwidth()))]
@@ -465,7 +467,7 @@ if __name__ == "__main__":
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         figure.WINDOW,
         (["--around-failure"], {"action": "store_true",
-                                "help": "draw the surroundings of the moving blocks of a run without equilibrium, if they are small; "
+                                "help": "draw the surroundings of the moving blocks of a run without equilibrium; "
                                         "of the largest unbalanced force if none is known to move"}),
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),

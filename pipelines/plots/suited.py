@@ -41,6 +41,8 @@ def state_fields(scene):
     return [name for name, is_shown in shows.items() if is_shown]
 
 
+AROUND = (1.0, 0.5, 0.25, 0.1)  # rock on each side of moving blocks, over their larger side; the first that gives a small part, else the last
+FILLED = 0.8  # share of the section's area from which a part of it is no enlargement
 SMALL = 0.25  # a part of the section up to this share of its area has pictures of its own
 
 
@@ -86,15 +88,21 @@ def places_of(value, variables):
     return None
 
 
-def surroundings(places, section):
-    """Window {x0, y0, x1, y1} [m] of some places, with as much of the section on each side as they are wide or high. None if they are
-    in one place, or the window is more than SMALL of the section."""
+def surroundings(places, section, share=1.0, most=SMALL):
+    """Window {x0, y0, x1, y1} [m] of some places, with this share of their larger side as rock on each side. None if they are in one place,
+    or the window is more than `most` of the section."""
     (x0, y0), (x1, y1) = map(min, zip(*section)), map(max, zip(*section))
     (left, low), (right, high) = map(min, zip(*places)), map(max, zip(*places))
-    around = max(right - left, high - low)
+    around = share * max(right - left, high - low)
     window = [max(x0, left - around), max(y0, low - around), min(x1, right + around), min(y1, high + around)]
-    is_small = (window[2] - window[0]) * (window[3] - window[1]) <= SMALL * (x1 - x0) * (y1 - y0)
+    is_small = (window[2] - window[0]) * (window[3] - window[1]) <= most * (x1 - x0) * (y1 - y0)
     return window if is_small and around > 0 else None
+
+
+def enlarged(places, section):
+    """Window {x0, y0, x1, y1} [m] around moving blocks: with less rock around large ones. None if they fill the section."""
+    windows = (surroundings(places, section, share) for share in AROUND)
+    return next(filter(None, windows), surroundings(places, section, AROUND[-1], FILLED))
 
 
 def detail(scene):

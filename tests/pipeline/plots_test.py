@@ -531,6 +531,15 @@ class Suited(ChainTest):
         for text in ("H", "x", "a b", "1 / 0", "'a'", "H.real", "[1]", "2 ** 9", ""):
             self.assertIsNone(number(text, {"H": "H"}), text)
 
+    def test_moving_blocks_are_enlarged(self):
+        """Small ones with as much rock around them, large ones with less; there is no part of the section if they fill it."""
+        sys.path.append(str(self.chain.source / "pipelines/plots"))
+        from suited import enlarged
+        section = [(0, 0), (120, 0), (120, 70), (0, 70)]
+        for low, high, window in (((40, 40), (50, 45), [30, 30, 60, 55]), ((30, 40), (70, 70), [26, 36, 74, 70]),
+                                  ((10, 20), (90, 70), [2, 12, 98, 70]), ((5, 5), (115, 65), None)):
+            self.assertEqual(enlarged([low, high], section), window)
+
 
 if __name__ == "__main__":
     main()

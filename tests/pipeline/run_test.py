@@ -198,6 +198,21 @@ class Run(ChainTest):
         self.assertIn(f"1 moving block (red arrows, on a scale of their own; the longest is {longest})", labels)
         plots.figure.plt.close(picture)
 
+        # The moving block is enlarged; where all blocks move the picture says so.
+        picture = plots.draw("state", self.out / "result.failed.h5", around_failure=True)
+        self.assertLess(np.prod(np.ptp([picture.axes[0].get_xlim(), picture.axes[0].get_ylim()], axis=1)), 200)
+        shutil.copy(self.out / "result.failed.h5", self.folder / "all.h5")
+        with h5py.File(self.folder / "all.h5", "r+") as file:
+            number = len(file["/blocks/area"])
+            for name, values in (("block", np.arange(number)), ("place", np.zeros((number, 2))), ("motion", np.ones((number, 2)))):
+                del file[f"/failure/{name}"]
+                file[f"/failure/{name}"] = values
+        axes = plots.draw("state", self.folder / "all.h5", around_failure=True).axes[0]
+        self.assertIn(f"{number} moving blocks (", axes.get_legend().get_texts()[-1].get_text())
+        self.assertIn("; these fill most of the section", axes.get_legend().get_texts()[-1].get_text())
+        self.assertLess(axes.get_xlim()[0], 0)
+        plots.figure.plt.close("all")
+
         # The answer is known the next time, and how many warnings there were.
         count = len(failure["/warnings/program"])
         self.assertTrue((failure["/warnings/program"] == "jointgen").all())
