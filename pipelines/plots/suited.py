@@ -105,13 +105,22 @@ def enlarged(places, section):
     return next(filter(None, windows), surroundings(places, section, AROUND[-1], FILLED))
 
 
+def faces(corners, section):
+    """Places of excavations that say where their faces are: corners as far as they are in the section [m], without those at or beyond its
+    left and right side, which an excavation reaches where the terrain goes on. All of them if there are no others."""
+    (x0, y0), (x1, y1) = map(min, zip(*section)), map(max, zip(*section))
+    return [(min(max(x, x0), x1), min(max(y, y0), y1)) for x, y in
+            [corner for corner in corners if x0 < corner[0] < x1] or corners]
+
+
 def detail(scene):
-    """The surroundings of the stages and monitoring points. None if they are large, or not known before jointgen has read the scene."""
+    """The surroundings of the faces of stages, and of monitoring points. None if they are large, or not known before jointgen has read the scene."""
     try:
         variables = scene.get("variables", {})
-        places = places_of([stage["remove_m"] for stage in scene.get("stage", [])] + [point["at_m"] for point in scene.get("point", [])],
-                           variables)
-        return surroundings(places, places_of(scene["section"]["outline_m"], variables))
+        section = places_of(scene["section"]["outline_m"], variables)
+        corners = places_of([stage["remove_m"] for stage in scene.get("stage", [])], variables)
+        points = places_of([point["at_m"] for point in scene.get("point", [])], variables)
+        return surroundings(faces(corners, section) + points, section)
     except (KeyError, TypeError, ValueError):  # a scene that nobody has checked; jointgen says it
         return None
 

@@ -531,6 +531,19 @@ class Suited(ChainTest):
         for text in ("H", "x", "a b", "1 / 0", "'a'", "H.real", "[1]", "2 ** 9", ""):
             self.assertIsNone(number(text, {"H": "H"}), text)
 
+    def test_an_excavation_that_reaches_the_side(self):
+        """The part that is drawn is around the faces, however far the excavation is beyond the side of the section or above it."""
+        sys.path.append(str(self.chain.source / "pipelines/plots"))
+        from suited import detail
+        scene = {"section": {"outline_m": [[0, 0], [500, 0], [500, 200], [0, 200]]}, "point": [{"at_m": [380, 200]}],
+                 "stage": [{"remove_m": [[[400, 185], [600, 185], [600, 230], [395, 230]]]},
+                           {"remove_m": [[[410, 170], [500, 170], [500, 185], [406, 185]]]}]}
+        self.assertEqual(detail(scene), [350, 140, 440, 200])
+        scene["stage"] = [{"remove_m": [[[-5, 190], [505, 190], [505, 210], [-5, 210]]]}]  # from side to side
+        self.assertIsNone(detail(scene))
+        scene["section"]["outline_m"][2:] = [[500, 9000], [0, 9000]]
+        self.assertEqual(detail(scene), [0, 0, 500, 710])
+
     def test_moving_blocks_are_enlarged(self):
         """Small ones with as much rock around them, large ones with less; there is no part of the section if they fill it."""
         sys.path.append(str(self.chain.source / "pipelines/plots"))
