@@ -12,7 +12,7 @@ shows each command. Files are made only if they are missing, or if the scene, op
 command continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
 study makes the runs of a study file, and writes their results and statistics: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. The
-same command continues an interrupted study; until then runs.csv has the runs that have ended. Two studies never work in one
+same command continues an interrupted study; until then tables and answers have the runs that have ended. Two studies never work in one
 folder at once.
 report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
 fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CSV, GeoPackage, Shapefile, DXF), and writes them as
@@ -27,7 +27,8 @@ Options:
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
-  --window WINDOW           fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
+  --window WINDOW           run, report: x0,y0,x1,y1, the part of the section in pictures of states and section-detail.png, in metres
+                            fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
   --layer NAME              fit: layer of the file
   --property NAME           fit: a set for each value of this property, in CSV a column
   --name NAME               fit: name of the set (default: the file's)
@@ -58,6 +59,7 @@ Example:
 import dataclasses
 import difflib
 import itertools
+import math
 import pathlib
 import shlex
 import shutil
@@ -143,9 +145,24 @@ def programs_in(folder, beside):
     return pathlib.Path(found).resolve().parent
 
 
+def window_of(options):
+    """[x0, y0, x1, y1] [m] of --window, a part of the section to draw; None without it."""
+    text = options.get("window")
+    if text is None:
+        return None
+    try:
+        window = [float(word) for word in text.split(",")]
+    except ValueError:
+        window = []
+    if len(window) != 4 or not all(map(math.isfinite, window)) or window[0] >= window[2] or window[1] >= window[3]:
+        raise NotWanted(f'--window is "{text}"; expected x0,y0,x1,y1 in metres, with x0 below x1 and y0 below y1')
+    return window
+
+
 def run(source, options, beside):
     """Makes the results, pictures and report of a scene."""
     from . import run as of_scene
+    options = {**options, "window": window_of(options)}
     return of_scene.run(source, options, programs_in(options.get("programs"), beside), beside / "jointcreep")
 
 
@@ -214,7 +231,7 @@ def report(source, options, beside):
     from . import report as page
     output = options["output"]
     page.write(source, output if output == files.STANDARD_OUTPUT else pathlib.Path(output), programs_in(options.get("programs"), beside),
-               options.get("pairs"))
+               options.get("pairs"), window_of(options))
     return 0
 
 
@@ -225,9 +242,9 @@ def fit(source, options, beside):
 
 
 SUBCOMMANDS = {
-    "run": Subcommand(run, {"--realization": "realization", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
+    "run": Subcommand(run, {"--realization": "realization", "--window": "window", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
-    "report": Subcommand(report, {"--pairs": "pairs"}, writes_text=True),
+    "report": Subcommand(report, {"--pairs": "pairs", "--window": "window"}, writes_text=True),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),
 }
 

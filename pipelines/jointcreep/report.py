@@ -201,8 +201,9 @@ def factor_of_safety(source, folder):
     return parts
 
 
-def of_run(source, programs, folder, pairs=None):
-    """Title and parts of the page of a result file. pairs: of points, as relative_displacements()."""
+def of_run(source, programs, folder, pairs=None, window=None):
+    """Title and parts of the page of a result file. pairs: of points, as relative_displacements(). window: x0, y0, x1, y1 [m], a part of
+    the section for pictures of states; None: as section-detail.png has it."""
     import figure  # matplotlib takes long to load
     from suited import detail
     with h5py.File(source) as file:
@@ -221,7 +222,7 @@ def of_run(source, programs, folder, pairs=None):
     parts = [f'<p class="bad">The run ended early: {failure}</p>'] if failure else []
     parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
     parts += factor_of_safety(source, folder)
-    window = detail(scene)
+    window = window or detail(scene)
     parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
     parts += [drawn("section", source, folder, "Its stages and points.", window=window)] if window else []
     parts += [drawn("blocks", source, folder, "Blocks by size."), "<h2>Histories</h2>"]
@@ -392,12 +393,14 @@ def of_study(out, programs, folder):
     return study.title or f"Study of {scene.get('title', out.name)}", parts
 
 
-def write(source, output, programs, pairs=None):
+def write(source, output, programs, pairs=None, window=None):
     """Writes the page of a result file or of a study's folder. output: a Path, or "-": standard output. pairs: of the points of a result,
-    as relative_displacements()."""
+    as relative_displacements(). window: of its pictures, as of_run()."""
     is_study = source.is_dir()
     if is_study and pairs:
         raise NotWanted("--pairs is for result files; a study collects a displacement with relative_to")
+    if is_study and window:
+        raise NotWanted("--window is for result files; a study's report has no pictures of states")
     if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
         raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}")
     if not is_study:
@@ -418,5 +421,5 @@ def write(source, output, programs, pairs=None):
         raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         path, folder = source.resolve(), pathlib.Path(folder)
-        title, parts = of_study(path, programs, folder) if is_study else of_run(path, programs, folder, pairs)
+        title, parts = of_study(path, programs, folder) if is_study else of_run(path, programs, folder, pairs, window)
     files.write_output(output, page(title, parts))

@@ -91,10 +91,12 @@ def is_before(date, until, start):
 
 class Plan:
     """The steps of a scene in their order. scene: as tomllib reads it; source: its path; options: of demsolve; programs: their folder;
-    launcher: path of jointcreep; realization: of the network, None for jointgen's default."""
+    launcher: path of jointcreep; realization: of the network, None for jointgen's default; window: x0, y0, x1, y1 [m] of the part of the
+    section in pictures of states, None: the surroundings of stages and points."""
 
-    def __init__(self, scene, source, options, programs, launcher, realization):
+    def __init__(self, scene, source, options, programs, launcher, realization, window=None):
         self.scene, self.source, self.programs, self.launcher = scene, source, programs, launcher
+        self.window = window
         self.of_network = [] if realization is None else ["--realization", realization]
         self.options, self.harmless = without(options, NO_CHANGE)
 
@@ -132,7 +134,7 @@ class Plan:
 
     def pictures(self, failed=None):
         from suited import detail, state_fields, suited
-        window = detail(self.scene)
+        window = self.window or detail(self.scene)
         result = pathlib.Path(RESULT if failed is None else FAILED)
         network, joints = pathlib.Path("network.h5"), pathlib.Path("joints.h5")
         wanted = set(suited(self.scene))
@@ -191,10 +193,11 @@ class Plan:
 
         def write(folder):
             from . import report
-            report.write(folder / result, folder / "report.html", self.programs)
+            report.write(folder / result, folder / "report.html", self.programs, window=self.window)
 
         page = [self.launcher, "report", result, "-o", pathlib.Path("report.html")]
         page += ["--programs", self.programs] if self.programs != self.launcher.parent else []
+        page += ["--window", ",".join(map(str, self.window))] if self.window else []
         needs = [self.programs / "jointverify", *[pathlib.Path(FAILED)] * falls]
         return [*steps, Step("report.html", page, needs, draw=write)]
 
@@ -427,7 +430,7 @@ def run(source, options, programs, launcher):
             raise NotWanted(f"{read}: is read, and is in the folder of the run; expected another folder")
     with runs.locked(out, "run") as lock:
         folder = Folder(out, source, path, quiet, lock)
-        of_scene = Plan(scene, path, options["rest"], programs, launcher, options.get("realization"))
+        of_scene = Plan(scene, path, options["rest"], programs, launcher, options.get("realization"), options.get("window"))
         if options.get("makefile"):
             plan.answer_of(programs / "jointgen", typed(source), "--check")
             write_makefile(folder, [*of_scene.chain(), *of_scene.rest()], quiet)

@@ -264,11 +264,16 @@ WINDOW = (["--window"], {"nargs": 4, "type": float, "metavar": ("X0", "Y0", "X1"
 
 
 def section_axes(outline, window=None):
-    """A figure for a section, or for the window x0, y0, x1, y1 of it, with equal scales."""
+    """A figure for a section, or for the window x0, y0, x1, y1 of it, with equal scales. outline: places of the section, None of one that is
+    not known."""
     if window:
-        outline = np.reshape(window, (2, 2))
+        section, outline = outline, np.reshape(window, (2, 2))
         if not np.all(outline[0] < outline[1]):
             raise NotWanted("--window: expected X0 below X1, and Y0 below Y1")
+        ends = outline if section is None else (np.min(section, axis=0), np.max(section, axis=0))
+        if np.any(outline[1] <= ends[0]) or np.any(outline[0] >= ends[1]):
+            raise NotWanted(f"--window shows nothing of the section, which is from [{ends[0][0]:g}, {ends[0][1]:g}] to "
+                            f"[{ends[1][0]:g}, {ends[1][1]:g}] m; expected a part of it")
     low, high = np.min(outline, axis=0), np.max(outline, axis=0)
     width, height = high - low
     scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)

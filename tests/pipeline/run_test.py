@@ -1,5 +1,6 @@
 """jointcreep run: what it makes of a scene, and what it does not make again."""
 
+import base64
 import html
 import json
 import os
@@ -243,6 +244,25 @@ class Run(ChainTest):
         self.assertRegex(title, r'^Strengths / 0\.\d+: day \S+, before the first stage; stage "bench" found no equilibrium; without creep the rock at ')
         plots.figure.plt.close("all")
 
+    def test_a_window(self):
+        """--window is that of pictures of states, section-detail.png and the report. Another one draws these again."""
+        self.scene.write_text(self.chain.small())
+        self.assertIn("section-detail.png", self.made("--window", "5,2.5,25,15", "--", "--no-creep"))
+        result, network = self.out / "result.h5", self.out / "network.h5"
+        for name, file, options in (("last-stress", result, {"field": "stress"}), ("section-detail", network, {})):
+            plots.save(name.split("-", maxsplit=1)[0].replace("last", "state"), file, self.folder / "p.png", window=(5, 2.5, 25, 15), **options)
+            self.assertEqual((self.folder / "p.png").read_bytes(), (self.out / f"{name}.png").read_bytes())
+        report = (self.out / "report.html").read_text()
+        self.assertIn(base64.b64encode((self.out / "section-detail.png").read_bytes()).decode(), report)
+        self.assertIn(base64.b64encode((self.out / "last-stress.png").read_bytes()).decode(), report)
+        self.assertEqual(self.made("--window=5,2.5,25,15", "--", "--no-creep"), set())
+        drawn_in_it = {"section-detail.png", "last-displacement.png", "last-stress.png", "last-contacts.png", "report.html"}
+        self.assertEqual(self.made("--window", "-5,-5,25,15", "--", "--no-creep"), drawn_in_it)
+        self.assertEqual(self.made("--", "--no-creep"), drawn_in_it - {"section-detail.png"})
+        self.assertFalse((self.out / "section-detail.png").exists())
+        done = self.called("--window", "500,0,600,10", "--", "--no-creep")
+        self.assertRegex(done.stderr, r"section-detail.png is not made: .*--window shows nothing of the section, which is from \[0, 0\] to ")
+
     def fakes(self, script):
         """A folder of programs in which demsolve is this script."""
         folder = self.folder / "fakes"
@@ -404,6 +424,8 @@ class Run(ChainTest):
             (["scene.toml", "-o", "out", "--", "--checkpoint", "x.h5"], 2, '"--checkpoint" after --'),
             (["scene.toml", "-o", "out", "--programs", "other"], 2, "jointgen: is not there"),
             (["scene.toml", "-o", "mine", "--makefile"], 2, "Makefile: is not of jointcreep run"),
+            (["scene.toml", "-o", "out", "--window", "1,2,3"], 2, '--window is "1,2,3"; expected x0,y0,x1,y1 in metres'),
+            (["scene.toml", "-o", "out", "--window", "9,2,3,4"], 2, '--window is "9,2,3,4"; expected x0,y0,x1,y1 in metres, with x0 below'),
             (["scene.toml", "-o", "new", "--makefile", "--", "--until", "1\n2"], 2, "no line breaks"),
         ]:
             with self.subTest(arguments):
