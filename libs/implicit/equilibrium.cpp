@@ -363,8 +363,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         return give_up();
     }
     const std::vector<Vector2d> force_at_start = assembly.force;
-    const double stored_at_start = stored_energy(assembly);
-    const bool is_beyond_strength = dissipated(assembly, start) != 0;
+    const double stored_at_start = stored_energy(assembly) + returned_energy(assembly, start);
     const bool is_balanced =
         balance_of(assembly, stiffest_, 0, settings.tolerance).ratio() <= settings.tolerance;
     if (!guess.empty() && !is_balanced) {
@@ -402,8 +401,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     convergence.dissipated = dissipated(assembly, start);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
-    if (!is_beyond_strength)
-        convergence.created = created_energy(assembly, start, force_at_start, convergence);
+    convergence.created = created_energy(assembly, start, force_at_start, convergence);
     return convergence;
 }
 

@@ -32,8 +32,6 @@ namespace jointcreep::implicit
 // and F1 at the end [N/m]:
 //
 //     0 <= damped - F1 du <= (F0 - F1) du
-//
-// Not where the start is beyond the strength: forces return to it before anything moves, and lose energy that is in no sum.
 double created_energy(const Assembly& assembly, const mechanics::State& start,
                       const std::vector<Vector2d>& force_at_start, const mechanics::Convergence& found);
 

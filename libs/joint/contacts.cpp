@@ -170,6 +170,24 @@ double stored_energy(const Contacts& contacts)
     return energy;
 }
 
+double returned_energy(const Contacts& contacts, const ContactsState& start)
+{
+    double energy = 0;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        const State &now = contacts.state[c], &before = start.state[c];
+        if (contacts.status[c] == ContactStatus::removed || contacts.status[c] == ContactStatus::open ||
+            (now.slip == before.slip && now.dilation == before.dilation))
+            continue;
+        const double sigma_n = contacts.traction[c].x(), tau = contacts.traction[c].y();
+        const Slopes spring = slopes(contacts.law[c], now, sigma_n);
+        energy += contacts.length[c] *
+                  (stored(contacts.law[c], sigma_n + spring.k_n * (now.dilation - before.dilation),
+                          tau + spring.k_s * (now.slip - before.slip)) -
+                   stored(contacts.law[c], sigma_n, tau));
+    }
+    return energy;
+}
+
 std::vector<Stiffening> stiffening_of(const Contacts& contacts, std::span<const Vector2d> displacement)
 {
     std::vector<Stiffening> found;

@@ -131,6 +131,8 @@ void pass(Tape& tape, std::vector<Stiffening>& stiffening);
 
 // Energy stored in contacts [J/m]; only differences have a meaning.
 double stored_energy(const Contacts& contacts);
+// What their springs would store beyond that if slip and dilation were still those of the states at the start [J/m].
+double returned_energy(const Contacts& contacts, const ContactsState& start);
 
 // Before a search for equilibrium: counts dissipated energy from here. Contacts need not know of stiffness damping.
 void begin_search(Contacts& contacts, bool damps_stiffness);

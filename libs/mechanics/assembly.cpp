@@ -280,6 +280,14 @@ bool yields(const Assembly& assembly)
     return any;
 }
 
+double returned_energy(const Assembly& assembly, const State& start)
+{
+    double energy = 0;
+    for_each_force([&](const auto& one, const auto& its_start) { energy += returned_energy(one, its_start); },
+                   assembly, start);
+    return energy;
+}
+
 void begin_search(Assembly& assembly, bool damps_stiffness)
 {
     for_each_force([&](auto& one) { begin_search(one, damps_stiffness); }, assembly);

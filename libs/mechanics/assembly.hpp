@@ -101,6 +101,8 @@ Index chunks_of(const Assembly& assembly);
 
 // Energy that all kinds of force have stored [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
+// What they would have stored beyond that if nothing had slipped, dilated or yielded since the start [J/m].
+double returned_energy(const Assembly& assembly, const State& start);
 
 // Whether anything may yield now, so that its tangents are found anew for each correction of the implicit engine.
 bool yields(const Assembly& assembly);

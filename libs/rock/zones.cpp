@@ -350,6 +350,23 @@ double stored_energy(const Zones& zones)
     return energy;
 }
 
+double returned_energy(const Zones& zones, const ZonesState& start)
+{
+    double energy = 0;
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z)
+        if (const Index number = zones.yielding_number[z]; number >= 0 && zones.is_present[z]) {
+            const YieldingZone& zone = zones.yielding[number];
+            const Eigen::Vector4d more = zone.plastic - start.yielding[number].plastic;
+            const Vector3d &now = zones.stress[z], &c = zones.stiffness[z];
+            const Vector3d held(now[0] + c[0] * more[0] + c[1] * (more[1] + more[2]),
+                                now[1] + c[0] * more[1] + c[1] * (more[0] + more[2]),
+                                now[2] + c[2] * more[3]);
+            const double held_zz = zone.stress_zz + c[0] * more[2] + c[1] * (more[0] + more[1]);
+            energy += zones.area[z] * (stored(c, held, held_zz) - stored(c, now, zone.stress_zz));
+        }
+    return energy;
+}
+
 void begin_search(Zones& zones, bool damps_stiffness)
 {
     for (YieldingZone& zone : zones.yielding)

@@ -150,6 +150,8 @@ inline void pass(Tape&, std::vector<Stiffening>&) {}
 
 // Energy stored in present zones [J/m]; only differences have a meaning.
 double stored_energy(const Zones& zones);
+// What they would store beyond that if plastic strain were still that at the start [J/m].
+double returned_energy(const Zones& zones, const ZonesState& start);
 
 // Before a search for equilibrium: counts dissipated energy from here. `damps_stiffness`: the search has stiffness
 // damping.
