@@ -15,6 +15,7 @@ AWAY = 11  # a name that has no room beside its place is this much farther off, 
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
 TICKS = 3  # ticks on a monitoring line are not closer than this [pt]
 CLOSE = 16  # names of places that are closer can be taken for each other's: letters stand for all names then [pt]
+BESIDE = 5  # a name that is closer to another place than this can be taken for that of the other [pt]
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
@@ -217,7 +218,12 @@ def is_crowded(names, axes, taken):
     if np.any(apart < CLOSE):
         return True
     trial = list(taken)
-    return any(free_box(points_of(place, axes), np.array([LETTER * len(name), LINE]), trial)[1] for name, place in names)
+    for at, (name, _) in enumerate(names):
+        box, is_far = free_box(places[at], np.array([LETTER * len(name), LINE]), trial)
+        away = np.linalg.norm(np.maximum(0, np.maximum(box[0] - places, places - box[1])), axis=1)
+        if is_far or np.any(np.delete(away, at) < BESIDE):
+            return True
+    return False
 
 
 def draw_letters(names, axes, taken):

@@ -313,6 +313,20 @@ class Plots(ChainTest):
         for i, box in enumerate(taken):
             self.assertTrue(plot_section.is_free(box, taken[:i]))
 
+    def test_a_name_beside_another_place_is_a_letter(self):
+        """The name of a middle point would stand over the next one, without an overlap."""
+        import figure
+        import plot_section
+        _, axes = figure.section_axes(numpy.array([[-94, -90], [90, -90], [90, 15], [-94, 15]], float), None)
+        self.addCleanup(figure.plt.close, axes.figure)
+        for apart, crowded in (15, True), (40, False):
+            names = [("crest", (-4, 15)), ("15 m behind", (-4 - apart, 15)), ("30 m behind", (-4 - 1.9 * apart, 15))]
+            taken = []
+            for _, place in names:
+                taken.append((plot_section.points_of(place, axes) - 2, plot_section.points_of(place, axes) + 2))
+            with self.subTest(apart=apart):
+                self.assertEqual(plot_section.is_crowded(names, axes, taken), crowded)
+
     def test_pictures_of_joint_sets(self):
         import plot_rose
         border = 55 * (1 + numpy.array([-1e-15, 0, 1e-15]))  # equal angles but for rounding
