@@ -9,6 +9,7 @@
 #include "model/checkpoint.hpp"
 #include "sensitivity/sensitivity.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <functional>
@@ -39,10 +40,10 @@ struct Recording {
 
 // Where an analysis is.
 struct Progress {
-    double fraction = 0;                            // of the scene's time [-]
-    std::string what;                               // the stage; "": creep between stages
-    std::string more;                               // about a dynamic analysis, or ""
-    std::optional<double> time{};                   // since start [s]; none: before it, in situ
+    double fraction = 0;          // that is done: mean of the shares of stages and of time [-]
+    std::string what;             // the stage; "": creep between stages
+    std::string more;             // about a dynamic analysis, or ""
+    std::optional<double> time{}; // since start [s]; none: before it, in situ
     const mechanics::Convergence* search = nullptr; // for equilibrium, if one is going on
     double tolerance = 0;                           // of its unbalanced force ratio
 };
@@ -88,13 +89,20 @@ struct Section {
     void say(const std::string& what, const std::string& more = "")
     {
         const bool is_in_situ = stage.empty() && now == 0 && !what.empty();
-        progress = {now / scene.end,
-                    what,
-                    more,
-                    is_in_situ ? std::nullopt : std::optional(now),
-                    nullptr,
-                    scene.equilibrium.tolerance};
+        progress = {share_done(), what,
+                    more,         is_in_situ ? std::nullopt : std::optional(now),
+                    nullptr,      scene.equilibrium.tolerance};
         observe(progress);
+    }
+    // Stages before now, and time. Stages are short and take long, creep the other way round.
+    double share_done() const
+    {
+        const double of_time = now / scene.end;
+        if (scene.stages.empty())
+            return of_time;
+        const auto n =
+            std::ranges::count_if(scene.stages, [this](const Stage& one) { return one.time < now; });
+        return (static_cast<double>(n) / static_cast<double>(scene.stages.size()) + of_time) / 2;
     }
     void say_search(const mechanics::Convergence& so_far)
     {

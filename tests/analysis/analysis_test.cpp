@@ -291,6 +291,9 @@ TEST(analysis, tells_where_it_is_and_how_searches_go)
         const auto look = [&](const analysis::Progress& now) {
             EXPECT_GE(now.fraction, fraction);
             EXPECT_LE(now.fraction, 1);
+            if (now.what == study.scene.stages.back().name) {
+                EXPECT_LT(now.fraction, 1) << "its equilibrium is searched for";
+            }
             fraction = now.fraction;
             what = now.what;
             time = now.time;
