@@ -28,14 +28,21 @@ constexpr double much_plastic_strain = 0.05; // [-]
 constexpr double large_displacement = 0.02;  // over the diagonal of the section [-]
 constexpr double much_merged = 2e-4;         // area of blocks merged into others, over the jointed rock [-]
 
-// Area of the rock where joint sets are [m2]: at most the sum of their regions.
+// Area of the rock where joint sets are [m2]: at most the sum of their regions, of equal ones once.
 double jointed_area(const Scene& scene)
 {
     const double whole = area_of(scene.outline);
-    double regions = 0;
-    for (const JointSet& set : scene.joint_sets)
-        regions += set.region ? area_of(*set.region) : whole;
-    return regions > 0 ? std::min(regions, whole) : whole;
+    std::vector<Polygon> regions;
+    double sum = 0;
+    for (const JointSet& set : scene.joint_sets) {
+        if (!set.region)
+            return whole;
+        if (std::ranges::find(regions, *set.region) != regions.end())
+            continue;
+        regions.push_back(*set.region);
+        sum += area_of(regions.back());
+    }
+    return sum > 0 ? std::min(sum, whole) : whole;
 }
 
 std::int64_t sum_of(const std::vector<Index>& numbers)

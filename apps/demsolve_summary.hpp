@@ -27,10 +27,10 @@ struct MeshEstimate {
     double share_of_zones;
 };
 void add_mesh_estimate(Summary& summary, const analysis::Bracket& bracket, const MeshEstimate& estimate);
-// A warning if it is much; else "".
 // For runs with reduced strengths: that merged blocks may be those that slide; or "".
 std::string merging_warning(const Scene& scene, const Blocks& blocks);
 
+// A warning if the mesh's share is much; else "".
 std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& estimate);
 
 // The warnings of a run; and as lines that end a message, each after a line break.

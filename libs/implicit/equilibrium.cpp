@@ -22,6 +22,14 @@ constexpr int most_without_gain = 15, most_without_gain_with_flow = 4;        //
 constexpr int most_trials = 50, most_trials_with_flow = 4, most_halvings = 6; // along a correction
 constexpr double least_kept_share = 1e-2;
 
+bool any_closes(const std::vector<ContactStatus>& before, const std::vector<ContactStatus>& now)
+{
+    for (std::size_t c = 0; c < now.size(); ++c)
+        if (before[c] == ContactStatus::open && now[c] != ContactStatus::open)
+            return true;
+    return false;
+}
+
 } // namespace
 
 // Finds forces at the present displacements, as reached straight from the start. Returns the merit: the
@@ -362,7 +370,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         reason_ = "forces are no finite numbers";
         return give_up();
     }
-    const std::vector<Vector2d> force_at_start = assembly.force;
+    const std::vector<ContactStatus> status_at_start = assembly.contacts.status;
     const double stored_at_start = stored_energy(assembly) + returned_energy(assembly, start);
     const bool is_balanced =
         balance_of(assembly, stiffest_, 0, settings.tolerance).ratio() <= settings.tolerance;
@@ -401,21 +409,17 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     convergence.dissipated = dissipated(assembly, start);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
-    convergence.created = created_energy(assembly, start, force_at_start, convergence);
+    if (!any_closes(status_at_start, assembly.contacts.status))
+        convergence.created = created_energy(assembly, start, convergence.damped);
     return convergence;
 }
 
-double created_energy(const Assembly& assembly, const mechanics::State& start,
-                      const std::vector<Vector2d>& force_at_start, const Convergence& found)
+double created_energy(const Assembly& assembly, const mechanics::State& start, double damped)
 {
-    double released = found.damped, most = 0;
-    for (std::size_t g = 0; g < assembly.displacement.size(); ++g) {
-        const Vector2d moved = assembly.displacement[g] - start.displacement[g];
-        released -= assembly.force[g].dot(moved);
-        most += (force_at_start[g] - assembly.force[g]).dot(moved);
-    }
-    const double too_little = std::max(0.0, -released);
-    return found.dissipated == 0 ? std::max(too_little, released - most) : too_little;
+    double released = damped;
+    for (std::size_t g = 0; g < assembly.displacement.size(); ++g)
+        released -= assembly.force[g].dot(assembly.displacement[g] - start.displacement[g]);
+    return std::max(0.0, -released);
 }
 
 // What a search needs to know of the assembly.

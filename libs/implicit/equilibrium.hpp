@@ -27,13 +27,13 @@ namespace jointcreep::implicit
 
 // Energy that the laws of rock and joints cannot have given in an equilibrium found by the implicit engine [J/m]; 0 where
 // there is none. A spring whose force changes from f0 to f1 on a straight path du takes the work f1 du. It stores less,
-// because its energy E is convex: f1 du - (E1 - E0) >= 0. Where nothing is dissipated, the difference is at most
-// (f1 - f0) du. Both hold for every spring, and therefore for the section, with the unbalanced forces F0 at the start
-// and F1 at the end [N/m]:
+// because its energy E is convex: f1 du - (E1 - E0) >= 0. This holds for every spring, also where it slips, yields or lets
+// go, and therefore for the section, with the unbalanced forces F1 at the end [N/m]:
 //
-//     0 <= damped - F1 du <= (F0 - F1) du
-double created_energy(const Assembly& assembly, const mechanics::State& start,
-                      const std::vector<Vector2d>& force_at_start, const mechanics::Convergence& found);
+//     0 <= damped - F1 du
+//
+// It does not hold of contacts that close: the force where they touch is not known from the start.
+double created_energy(const Assembly& assembly, const mechanics::State& start, double damped);
 
 class Solver
 {

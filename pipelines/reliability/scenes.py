@@ -10,6 +10,7 @@ from campaign import HANGS, Campaign, ended
 from random_scene import random_scene
 
 ENERGY = "the energy balance of the dynamic analysis is off"  # a run without equilibrium that says so is refused by name
+WRONG = "the result is wrong"
 LONGEST = 600  # s of the processor; a run that takes longer hangs
 
 
@@ -29,6 +30,8 @@ def trial(campaign, case, folder):
             return "ends otherwise", f"{program}, exit code {done.code}, and its output is {'' if done.code else 'not '}there"
         if done.code == 2:
             return "refused", done.err
+        if WRONG in done.err:  # a guard says so; a false alarm is a fault, too
+            return "guard failed", f"{program}: {done}"
         if done.code == 3:
             output = folder / "result.failed.h5"
         source = output
@@ -57,5 +60,5 @@ def body(campaign):
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["verified", "no equilibrium, verified", "refused", "not verified", "ends otherwise", "hangs"]
+    OUTCOMES = ["verified", "no equilibrium, verified", "refused", "not verified", "guard failed", "ends otherwise", "hangs"]
     Campaign("scenes with", OUTCOMES, OUTCOMES[3:], 1000).run(body)

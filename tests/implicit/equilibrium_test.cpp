@@ -472,16 +472,10 @@ TEST(implicit_equilibrium, energy_is_accounted_for)
         plate({-1e5, 0}, {0, 0}, {}, 0, 0), plate({1e5, 0}, {0, -1e5}, 20 * deg, 0, 0),
         plate({-4e4, 0}, {0, 0}, 30 * deg, 0, 0), plate({3e5, 0}, {0, 0}, 20 * deg, 4e4, 1e5)};
     for (Section s : plates) {
-        find_forces(s.assembly);
         const mechanics::State start = state_of(s.assembly);
         const Convergence convergence = found(s.assembly);
         EXPECT_LE(convergence.created, 1e-12 * std::abs(convergence.work_of_loads));
-        for (const double wrong : {-2.0, 3.0}) { // of what is damped: bounds that it does not keep to
-            Convergence other = convergence;
-            other.damped *= wrong;
-            EXPECT_GE(implicit::created_energy(s.assembly, start, start.force, other),
-                      convergence.dissipated == 0 || wrong < 0 ? 0.5 * convergence.damped : 0);
-        }
+        EXPECT_GT(implicit::created_energy(s.assembly, start, -2 * convergence.damped), convergence.damped);
         const double size = std::abs(convergence.work_of_loads);
         EXPECT_NEAR(convergence.work_of_loads,
                     convergence.stored + convergence.dissipated + convergence.damped, 1e-12 * size);

@@ -549,6 +549,21 @@ class ThickBlock(ChainTest):
                     self.assertEqual(np.flatnonzero(status == OPEN).tolist(), [upper] if share > 1 else [])
 
 
+class BondsLetGo(ChainTest):
+    """What bonds have stored is lost at once. No guard may take that for energy without a source."""
+
+    def test_pulled_apart(self):
+        """Two blocks, 1 MPa on a bond of 1 MPa/0.1 mm: 0.95 of it on day 10, 1.05 on day 11."""
+        text = scene([[0, 0], [1, 0], [1, 2], [0, 2]], [joint("middle", [0, 1], [1, 1])],
+                     [held([0, 0], [1, 0]), held([1, 2], [0, 2], displacement_mm=[0, 0.3], load_history=[[0, 0], [10, 0.95], [11, 1.05]])],
+                     [material("joint", 10000, cohesion=5, tension=1)], gravity=0, points=[[0.5, 1.5]], zone=0.5, end=12)
+        for engine in ENGINES:
+            with self.subTest(engine=engine):
+                data = solved(self.chain, text, "--engine", engine)
+                self.assertTrue((data["/states/contact_status"][-1] == OPEN).all())
+                self.assertAlmostEqual(data["/history/displacement"][-1, 0, 1], 0.315e-3, delta=1e-9)
+
+
 class NothingMoves(ChainTest):
     def test_rock_held_all_around(self):
         """Zones as large as the section have no gridpoint inside."""
