@@ -36,8 +36,11 @@ def distribution(quantity, study, values, beyond=0):
     more = f" ({beyond} at least {answers.LARGEST_FACTOR})" if beyond else ""
     axes.step(ordered, 100 * np.arange(1, len(values) + 1) / n, where="post", color=figure.COLORS[0],
               label=f"{n} {study.design.counted()}{more}")
-    for place, limit in enumerate([*quantity.above, *quantity.below]):
+    limits = [*((limit, "above") for limit in quantity.above), *((limit, "below") for limit in quantity.below)]
+    for place, (limit, side) in enumerate(limits):
         axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
+        axes.annotate(f"{side} {limit:g}", (limit, 50), xytext=(3 if side == "above" else -3, 0), textcoords="offset points", rotation=90,
+                      ha="left" if side == "above" else "right", va="center", fontsize=7, color=figure.COLORS[1], path_effects=figure.HALO)
     axes.set_xlabel(quantity.title())
     axes.set_ylabel("runs up to this value (percent)")
     axes.set_ylim(0, 100)
@@ -98,13 +101,14 @@ def parameters(quantity, study, values, run, given, of_shares):
     numeric = numeric[:MOST_PANELS]
     correlations = [one for one in of_shares if one[1] == answers.CORRELATION]
     kinds = [kind for kind in (answers.with_parts(of_shares), [(one, False) for one in correlations]) if kind]
-    count = len(numeric) + len(kinds)
-    columns = min(3, count)
-    lines = -(-count // columns)
-    plot = figure.plt.figure(figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * lines))
-    grid = plot.add_gridspec(lines, columns)
-    places = [(place // columns, slice(place % columns, None if place == count - 1 else place % columns + 1)) for place in range(count)]
-    panels = [plot.add_subplot(grid[place]) for place in places]  # the last one as wide as there is room
+    lines = [numeric[i : i + 3] for i in range(0, len(numeric), 3)]
+    if kinds and lines and len(lines[-1]) + len(kinds) <= 3:
+        lines[-1] = lines[-1] + kinds
+    elif kinds:
+        lines.append(kinds)
+    plot = figure.plt.figure(figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * len(lines)))
+    of_lines = plot.subfigures(len(lines), 1, squeeze=False)[:, 0]  # labels of one line do not move the panels of another
+    panels = [axes for part, line in zip(of_lines, lines) for axes in part.subplots(1, len(line), squeeze=False)[0]]
     for axes, column in zip(panels, numeric):
         of_runs = np.array([given[one]["given"][column] for one in run], float)
         if quantity.what == "failed":
