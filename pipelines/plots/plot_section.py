@@ -4,6 +4,7 @@
 import matplotlib.lines
 import matplotlib.patches
 import matplotlib.path
+import matplotlib.transforms
 import numpy as np
 from matplotlib.collections import LineCollection
 
@@ -12,6 +13,7 @@ import figure
 STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
 SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1)]  # of a place, where its name can be
 AWAY = 11  # a name that has no room beside its place is this much farther off, or a multiple [pt]
+AROUND = (0, 6, 12, 20, 30, 42, 56)  # distances of a name from its place, the nearest first [pt]
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
 TICKS = 3  # ticks on a monitoring line are not closer than this [pt]
 CLOSE = 16  # names of places that are closer can be taken for each other's: letters stand for all names then [pt]
@@ -62,49 +64,59 @@ def draw_joints(file, axes, inside):
     return entries
 
 
-def draw_number(number, corners, axes, taken, font, crowded=False):
-    """Writes a stage's number in its middle, or where nothing is written yet; taken as in free_box(). crowded: smaller, anywhere inside
-    where it fits, else beside with a line."""
-    corners = np.array(corners, float)
-    font = min(font, 5.5) if crowded else font
-    middle, radius = corners.mean(axis=0), font - 0.5
-    places = [middle, *(middle + corners) / 2, *(middle + 2 * corners) / 3]
-    if crowded:
-        places = [place for place in [middle, *inside_of(corners)] if holds(corners, place, radius - 1, axes)]
-    boxes = [(points_of(place, axes) - radius, points_of(place, axes) + radius) for place in places]
-    free = next((i for i, box in enumerate(boxes) if is_free(box, taken)), None)
-    look = {"ha": "center", "va": "center", "zorder": 4, "fontsize": font,
-            "bbox": {"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5}}
-    if free is None and crowded:
-        write_around(str(number), middle, axes, np.full(2, 2 * radius), taken, **look)
-    elif free is None:
-        write(str(number), middle, axes, free_box(points_of(middle, axes), np.full(2, 2 * radius), taken)[0], True, **look)
-    else:
-        taken.append(boxes[free])
-        axes.annotate(str(number), places[free], **look)
+def draw_number(number, corners, stages, axes, taken, fonts):
+    """Writes a stage's number inside of its polygon, as near to the middle as nothing is written yet, in the first of these fonts that fits;
+    else outside of all stages, with a line to it. stages: polygons of all; taken as in free_box()."""
+    look = {"ha": "center", "va": "center", "zorder": 4, "bbox": {"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5}}
+    for font in fonts:
+        radius = font - 0.5
+        for place in inside_of(corners, radius - 1, axes):
+            box = points_of(place, axes) - radius, points_of(place, axes) + radius
+            if is_free(box, taken):
+                taken.append(box)
+                axes.annotate(str(number), place, fontsize=font, **look)
+                return
+    write_outside(str(number), corners, stages, axes, np.full(2, 2 * radius), taken, fontsize=font, **look)
 
 
-def inside_of(corners):
-    """Places of a grid in a polygon [m], those near its middle first."""
+def inside_of(corners, radius, axes):
+    """Places of a grid [m] in a polygon that holds a circle [pt] around them, as far as its upper, lower and lateral ends say; those near
+    the polygon's middle first."""
     low, high = corners.min(axis=0), corners.max(axis=0)
+    middle = (low + high) / 2
     grid = np.stack(np.meshgrid(*(np.linspace(*ends, 25)[1:-1] for ends in zip(low, high))), axis=-1).reshape(-1, 2)
-    grid = grid[matplotlib.path.Path(corners).contains_points(grid)]
-    return grid[np.argsort(np.linalg.norm((grid - corners.mean(axis=0)) / (high - low), axis=1), kind="stable")]
+    grid = np.vstack([middle, grid[np.argsort(np.linalg.norm((grid - middle) / (high - low), axis=1), kind="stable")]])
+    polygon, reach = matplotlib.path.Path(corners), radius / points_of([1, 0], axes)[0]
+    ends = [grid + reach * np.array(side) for side in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))]
+    return grid[np.all([polygon.contains_points(end) for end in ends], axis=0)]
 
 
-def holds(corners, place, radius, axes):
-    """Whether a polygon holds a circle [pt] around a place, as far as its upper, lower and lateral ends say."""
-    scale = radius / (points_of([1, 0], axes) - points_of([0, 0], axes))[0]
-    ends = np.array(place) + scale * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
-    return bool(matplotlib.path.Path(corners).contains_points(ends).all())
+def write_outside(text, corners, stages, axes, size, taken, **look):
+    """Text with a line to a stage, where its box of this size [pt] overlaps no stage and none of `taken`, to which it is added. The line
+    crosses no other stage, if that is possible. Where stages fill the picture, the text is in its own."""
+    paths = [matplotlib.path.Path(points_of(stage, axes)) for stage in stages]
+    place = [*inside_of(corners, 2, axes), *inside_of(corners, 0, axes), corners.mean(axis=0)][0]
+    middle, best = points_of(place, axes), (np.inf, None)
+    for away in (*AROUND, *range(70, 800, 15)):
+        for box in boxes_around(middle, size, away, axes):
+            if is_free(box, taken) and not any(path.intersects_bbox(matplotlib.transforms.Bbox(box)) for path in paths):
+                line = matplotlib.path.Path([middle, np.mean(box, axis=0)])
+                best = min(best, (sum(path.intersects_path(line) for path in paths), box), key=lambda one: one[0])
+        if best[0] <= 1:  # its own
+            break
+    box = (middle - size / 2, middle + size / 2) if best[1] is None else best[1]
+    taken.append(box)
+    write(text, place, axes, box, best[1] is not None, **look)
 
 
 def draw_stages(scene, axes, inside, taken, crowded=False):
-    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box(); crowded
-    as in draw_number()."""
+    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box(); crowded:
+    small numbers."""
     entries = []
     stages = scene.get("stage", [])
     few = len(stages) <= FEW
+    fonts = [8, 5.5] if few and not crowded else [5.5]
+    of_all = [seen for stage in stages for seen in (figure.part_in(axes, corners) for corners in stage["remove_m"]) if len(seen)]
     for number, stage in enumerate(stages, 1):
         shown = False
         for corners in stage["remove_m"]:
@@ -116,7 +128,7 @@ def draw_stages(scene, axes, inside, taken, crowded=False):
             if len(seen) == 0:
                 continue
             shown = True
-            draw_number(number, seen, axes, taken, 8 if few else 5.5, crowded)
+            draw_number(number, seen, of_all, axes, taken, fonts)
         if not shown:
             continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
@@ -185,23 +197,28 @@ def free_box(place, size, taken):
 
 def write(text, place, axes, box, is_far, **look):
     """Text in a box of free_box(); with a line to its place if it is farther off."""
-    line = {"arrowprops": {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0, "shrinkB": 2}} if is_far else {}
+    line = {"arrowprops": {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": 2, "path_effects": figure.HALO}} if is_far else {}
     axes.annotate(text, place, xytext=np.mean(box, axis=0) - points_of(place, axes), textcoords="offset points", **look, **line)
+
+
+def boxes_around(middle, size, away, axes):
+    """Boxes {low, high} of this size that are so far from a place, in all directions as far as they are in the picture. All in pt."""
+    ends = points_of(np.transpose([axes.get_xlim(), axes.get_ylim()]), axes)
+    for angle in np.radians([45, 135, -45, -135, 0, 180, 90, -90, 22, 158, -22, -158, 68, 112, -68, -112]):
+        direction = np.array([np.cos(angle), np.sin(angle)])
+        centre = middle + direction * (4 + away + np.abs(direction) @ size / 2)
+        box = centre - size / 2, centre + size / 2
+        if np.all(box[0] > ends[0]) and np.all(box[1] < ends[1]):
+            yield box
 
 
 def write_around(text, place, axes, size, taken, others=(), **look):
     """Text near a place, where its box of this size [pt] overlaps none of `taken`, to which it is added, and is far from other places [pt];
     with a line to the place if it is farther off."""
     middle = points_of(place, axes)
-    ends = points_of(np.transpose([axes.get_xlim(), axes.get_ylim()]), axes)
-    for away in (0, 6, 12, 20, 30, 42, 56):
-        free = []
-        for angle in np.radians([45, 135, -45, -135, 0, 180, 90, -90, 22, 158, -22, -158, 68, 112, -68, -112]):
-            direction = np.array([np.cos(angle), np.sin(angle)])
-            centre = middle + direction * (4 + away + np.abs(direction) @ size / 2)
-            box = centre - size / 2, centre + size / 2
-            if is_free(box, taken) and np.all(box[0] > ends[0]) and np.all(box[1] < ends[1]):
-                free.append((min([20.0, *(np.linalg.norm(centre - other) for other in others)]), box))
+    for away in AROUND:
+        free = [(min([20.0, *(np.linalg.norm(np.mean(box, axis=0) - other) for other in others)]), box)
+                for box in boxes_around(middle, size, away, axes) if is_free(box, taken)]
         if free:
             box = max(free, key=lambda one: one[0])[1]  # the first of equal ones
             break

@@ -533,6 +533,34 @@ class Plots(ChainTest):
             self.assertEqual([text.get_text() for text in axes.texts], [str(i + 1) for i in range(count)])
 
 
+    def test_numbers_of_stages_stand_in_no_other_stage(self):
+        """A number that does not fit in its stage is outside of all stages, with a line to its own."""
+        import figure
+        import plot_section
+
+        levels = [15, 6, -1, -8, -15]
+        stages = [{"name": f"bench {i}", "date": i, "remove_m": [[[-9, low], [9, low], [9, high], [-9, high]]]}
+                  for i, (high, low) in enumerate(zip(levels, levels[1:]), 1)]
+        for window, beside in (((-160, -165, 160, 185), 4), ((-400, -400, 400, 400), 4), ((-60, -60, 60, 75), 0), ((-8, -14, 8, 14), 0)):
+            for crowded in True, False:
+                plot, axes = figure.section_axes(None, window)
+                self.addCleanup(figure.plt.close, plot)
+                inside = axes.add_patch(figure.matplotlib.patches.Polygon([[-500, -500], [500, -500], [500, 500], [-500, 500]]))
+                taken = [(plot_section.points_of(place, axes) - 3, plot_section.points_of(place, axes) + 8)
+                         for place in ((-9, 0), (0, 15), (9, 0), (0, -15))]
+                plot_section.draw_stages({"stage": stages}, axes, inside, taken, crowded)
+                plot.canvas.draw()
+                with self.subTest(window=window, crowded=crowded):
+                    self.assertEqual([text.get_text() for text in axes.texts], ["1", "2", "3", "4"])
+                    self.assertEqual(sum(text.arrow_patch is not None for text in axes.texts), beside)
+                    for text in axes.texts:
+                        box = text.get_bbox_patch().get_window_extent()
+                        stands_in = [str(i) for i, stage in enumerate(stages, 1) if figure.matplotlib.path.Path(
+                            axes.transData.transform(stage["remove_m"][0])).intersects_bbox(box)]
+                        self.assertEqual(stands_in, [] if text.arrow_patch else [text.get_text()])
+                        ends = figure.matplotlib.path.Path(stages[int(text.get_text()) - 1]["remove_m"][0])
+                        self.assertTrue(ends.contains_point(text.xy))
+
 
 class Suited(ChainTest):
     def test_the_part_of_a_large_section_is_found_by_names_of_numbers(self):
