@@ -92,7 +92,7 @@ def is_before(date, until, start):
 class Plan:
     """The steps of a scene in their order. scene: as tomllib reads it; source: its path; options: of demsolve; programs: their folder;
     launcher: path of jointcreep; realization: of the network, None for jointgen's default; window: x0, y0, x1, y1 [m] of the part of the
-    section in pictures of states, None: the surroundings of stages and points."""
+    section in pictures of states, None: the surroundings of the faces of stages."""
 
     def __init__(self, scene, source, options, programs, launcher, realization, window=None):
         self.scene, self.source, self.programs, self.launcher = scene, source, programs, launcher

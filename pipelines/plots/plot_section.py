@@ -264,7 +264,9 @@ def annotate(name, place, axes, taken):
 
 def draw_places(scene, key, label, marker, axes, taken):
     """Monitoring points, or gauges. Returns legend entries, and names with their places."""
-    places = [(place["name"], place["at_m"]) for place in scene.get(key, []) if figure.is_in(axes, place["at_m"])]
+    given = scene.get(key, [])
+    places = [(place["name"], place["at_m"]) for place in given if figure.is_in(axes, place["at_m"])]
+    label += f" ({len(given) - len(places)} outside)" if len(places) < len(given) else ""
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for _, place in places:
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)

@@ -43,7 +43,8 @@ def state_fields(scene):
 
 AROUND = (1.0, 0.5, 0.25, 0.1)  # rock on each side of moving blocks, over their larger side; the first that gives a small part, else the last
 FILLED = 0.8  # share of the section's area from which a part of it is no enlargement
-SMALL = 0.25  # a part of the section up to this share of its area has pictures of its own
+SMALL = 0.25  # share of the section's area up to which moving blocks, with the rock around them, are a small part of it
+HALF = 0.5  # of the section's width or height; the faces of stages have pictures of their own if they, with rock around, are at most so large
 
 
 def number(value, variables):
@@ -88,21 +89,23 @@ def places_of(value, variables):
     return None
 
 
-def surroundings(places, section, share=1.0, most=SMALL):
-    """Window {x0, y0, x1, y1} [m] of some places, with this share of their larger side as rock on each side. None if they are in one place,
-    or the window is more than `most` of the section."""
+def surroundings(places, section, share=1.0):
+    """Window {x0, y0, x1, y1} [m] of some places, with this share of their larger side as rock on each side, as far as the section reaches;
+    and its width and height over those of the section."""
     (x0, y0), (x1, y1) = map(min, zip(*section)), map(max, zip(*section))
     (left, low), (right, high) = map(min, zip(*places)), map(max, zip(*places))
     around = share * max(right - left, high - low)
     window = [max(x0, left - around), max(y0, low - around), min(x1, right + around), min(y1, high + around)]
-    is_small = (window[2] - window[0]) * (window[3] - window[1]) <= most * (x1 - x0) * (y1 - y0)
-    return window if is_small and around > 0 else None
+    return window, ((window[2] - window[0]) / (x1 - x0), (window[3] - window[1]) / (y1 - y0))
 
 
 def enlarged(places, section):
     """Window {x0, y0, x1, y1} [m] around moving blocks: with less rock around large ones. None if they fill the section."""
-    windows = (surroundings(places, section, share) for share in AROUND)
-    return next(filter(None, windows), surroundings(places, section, AROUND[-1], FILLED))
+    for share in AROUND:
+        window, (width, height) = surroundings(places, section, share)
+        if width * height <= SMALL:
+            return window
+    return window if width * height <= FILLED else None
 
 
 def faces(corners, section):
@@ -114,14 +117,14 @@ def faces(corners, section):
 
 
 def detail(scene):
-    """The surroundings of the faces of stages, and of monitoring points. None if they are large, or not known before jointgen has read the scene."""
+    """The surroundings of the faces of stages. None if there are none, if they are large, or not known before jointgen has read the scene."""
     try:
         variables = scene.get("variables", {})
         section = places_of(scene["section"]["outline_m"], variables)
         corners = places_of([stage["remove_m"] for stage in scene.get("stage", [])], variables)
-        points = places_of([point["at_m"] for point in scene.get("point", [])], variables)
-        return surroundings(faces(corners, section) + points, section)
-    except (KeyError, TypeError, ValueError):  # a scene that nobody has checked; jointgen says it
+        window, shares = surroundings(faces(corners, section), section)
+        return window if 0 < min(shares) <= HALF else None
+    except (KeyError, TypeError, ValueError, ZeroDivisionError):  # no stage, or a scene that nobody has checked; jointgen says it
         return None
 
 

@@ -580,11 +580,34 @@ class Suited(ChainTest):
         scene = {"section": {"outline_m": [[0, 0], [500, 0], [500, 200], [0, 200]]}, "point": [{"at_m": [380, 200]}],
                  "stage": [{"remove_m": [[[400, 185], [600, 185], [600, 230], [395, 230]]]},
                            {"remove_m": [[[410, 170], [500, 170], [500, 185], [406, 185]]]}]}
-        self.assertEqual(detail(scene), [350, 140, 440, 200])
+        self.assertEqual(detail(scene), [365, 140, 440, 200])
         scene["stage"] = [{"remove_m": [[[-5, 190], [505, 190], [505, 210], [-5, 210]]]}]  # from side to side
         self.assertIsNone(detail(scene))
         scene["section"]["outline_m"][2:] = [[500, 9000], [0, 9000]]
         self.assertEqual(detail(scene), [0, 0, 500, 710])
+
+    def test_points_do_not_change_the_part(self):
+        """A point far above the crown or behind the crest is outside of the part, and the legend says it."""
+        sys.path.append(str(self.chain.source / "pipelines/plots"))
+        from suited import detail
+        cavern = {"section": {"outline_m": [[-160, -165], [160, -165], [160, 185], [-160, 185]]}, "point": [{"at_m": [0, 44]}],
+                  "stage": [{"remove_m": [[[-9, -15], [9, -15], [9, 15], [-9, 15]]]}]}
+        cut = {"section": {"outline_m": [[-94, -90], [90, -90], [90, 15], [-94, 15]]}, "point": [{"at_m": [-34, 15]}],
+               "stage": [{"remove_m": [[[-4, 15], [0, 0], [90, 0], [90, 15]]]}]}
+        self.assertEqual(detail(cavern), [-39, -45, 39, 45])
+        self.assertEqual(detail(cut), [-19, -15, 15, 15])
+        self.assertEqual(detail({**cavern, "point": []}), detail(cavern))
+        for stages in [], [{"remove_m": [[[200, 200], [205, 200], [200, 205]]]}]:  # none, and one outside of the section
+            self.assertIsNone(detail({**cavern, "stage": stages}))
+        for half, part in ((78, [-39, -45, 39, 45]), (77.9, None)):  # as wide as the section, or nearly half of it
+            self.assertEqual(detail({**cavern, "section": {"outline_m": [[-half, -60], [half, 60]]}}), part)
+        import plot_section
+        import figure
+        plot, axes = figure.section_axes(None, (-39, -45, 39, 45))
+        self.addCleanup(figure.plt.close, plot)
+        scene = {"point": [{"name": "crown", "at_m": [0, 15]}, {"name": "above", "at_m": [0, 60]}]}
+        entries, names = plot_section.draw_places(scene, "point", "monitoring point", "o", axes, [])
+        self.assertEqual(([entry.get_label() for entry in entries], names), (["monitoring point (1 outside)"], [("crown", [0, 15])]))
 
     def test_moving_blocks_are_enlarged(self):
         """Small ones with as much rock around them, large ones with less; there is no part of the section if they fill it."""
