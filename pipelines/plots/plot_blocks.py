@@ -2,8 +2,8 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The smallest 1 percent of the area has the first colour of the scale, because slivers would take most of it. With a window
-the scale is for the blocks that are completely inside; larger blocks, such as rock without joints around them, are grey.
+The smallest 1 percent of the area has the first colour of the scale, because slivers would take most of it. Rock without joints around the
+regions of joint sets (region_m) is grey. With a window the scale is for the blocks that are completely inside; larger blocks are grey.
 """
 
 import matplotlib.colors
@@ -15,9 +15,10 @@ import numpy as np
 from matplotlib.collections import LineCollection, PathCollection
 
 import figure
+import joint_sets
 
 EXTENDED = -1  # of these, joint edges without a part of a joint trace
-LARGER = "0.72"  # than the scale has
+LARGER = "0.72"  # than the scale has, or without joints
 
 
 def block_paths(file):
@@ -90,13 +91,18 @@ def draw(file, window=None, by="size"):
 
     fills = []
     if by == "size":
-        low, high = size_range(area[whole_blocks(paths, axes)])
-        blocks = PathCollection(paths, cmap=figure.SHADES.with_extremes(over=LARGER),
+        jointed = joint_sets.jointed(file)
+        whole = whole_blocks(paths, axes)
+        low, high = size_range(area[whole & jointed if np.any(whole & jointed) else whole])
+        blocks = PathCollection(paths, cmap=figure.SHADES.with_extremes(over=LARGER, bad=LARGER),
                                 norm=matplotlib.colors.LogNorm(low, high), zorder=0)
-        blocks.set_array(area)
+        blocks.set_array(np.ma.masked_array(area, ~jointed))
         axes.add_collection(blocks)
         scale = plot.colorbar(blocks, ax=axes, label="block area (m²)", shrink=0.6,
-                              extend=figure.extension(area, low, high))
+                              extend=figure.extension(area[jointed], low, high))
+        if not np.all(jointed):
+            fills.append(matplotlib.patches.Patch(facecolor=LARGER, edgecolor="k", linewidth=0.5,
+                                                  label="blocks outside of region_m: not on the scale"))
         scale.ax.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
         scale.ax.yaxis.set_major_formatter("{x:g}")
         scale.ax.yaxis.set_minor_locator(matplotlib.ticker.NullLocator())

@@ -87,21 +87,6 @@ def draw_law(axes, law, values, weights, what, color):
                   textcoords="offset points", ha="right", va="top", fontsize=7)
 
 
-def jointed(file):
-    """Which blocks are those between joints: not those that have parts of the border of a region of joint sets (region_m), which belong to
-    the rock without joints around it; all, if the sets have no regions or nothing else is left."""
-    regions = {tuple(map(tuple, one["region_m"])) for one in figure.scene_of(file).get("joint_set", []) if "region_m" in one}
-    if not regions or any("region_m" not in one for one in figure.scene_of(file).get("joint_set", [])):
-        return np.ones(len(figure.array(file, "/blocks/area")), bool)
-    first, corner = figure.array(file, "/blocks/first_ring"), figure.array(file, "/rings/first_corner")
-    position, vertex = figure.array(file, "/vertices/position"), figure.array(file, "/rings/vertex")
-    paths = [matplotlib.path.Path(corners) for corners in regions]
-    small = 1e-6 * np.max(np.ptp(position, axis=0))
-    of_vertex = np.any([path.contains_points(position, radius=small) | path.contains_points(position, radius=-small) for path in paths], axis=0)
-    inside = np.array([of_vertex[vertex[corner[begin]:corner[end]]].all() for begin, end in zip(first[:-1], first[1:])])
-    return inside if inside.any() else ~inside
-
-
 def draw_areas(axes, area, left_out):
     """left_out: area of rock without joints around the sets, which is not in the histogram [m2]."""
     order = np.sort(area)
@@ -143,7 +128,7 @@ def draw(file):
             panels[-1].legend(handles=[matplotlib.patches.Patch(label="in the section", **BARS),
                                        matplotlib.lines.Line2D([], [], label="law of the scene", **LAW)],
                               loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
-    chosen = jointed(file)
+    chosen = joint_sets.jointed(file)
     draw_areas(plot.add_subplot(grid[count, :]), area[chosen], area[~chosen].sum())
     return plot
 

@@ -509,6 +509,28 @@ class Plots(ChainTest):
             _, axes = figure.section_axes(None, window)
             self.assertEqual(plot_blocks.whole_blocks(squares, axes).tolist(), whole)
 
+    def test_rock_outside_of_regions_is_not_on_the_scale(self):
+        """It is grey, the legend says it, and the largest block between joints has the last colour."""
+        import figure
+        import plot_blocks
+        from jointcreep import plots
+
+        text = changed(self.chain.small(), "^persistence = 1$", "persistence = 1\nregion_m = [[10, 8], [20, 8], [20, 14], [10, 14]]", 2)
+        picture = plots.draw("blocks", self.chain.network(text))
+        self.addCleanup(figure.plt.close, picture)
+        (blocks,) = [one for one in picture.axes[0].collections if one.get_array() is not None]
+        area = numpy.asarray(blocks.get_array())
+        self.assertGreater(len(area), 2)
+        self.assertLess(blocks.norm.vmax, 60)  # of the region
+        self.assertGreater(area.max(), 60)
+        picture.canvas.draw()
+        grey = figure.matplotlib.colors.to_rgba(plot_blocks.LARGER)
+        self.assertTrue(numpy.allclose(blocks.get_facecolors()[area.argmax()], grey))
+        labels = [one.get_text() for one in picture.axes[0].get_legend().get_texts()]
+        self.assertIn("blocks outside of region_m: not on the scale", labels)
+        self.assertFalse([one for one in plots.draw("blocks", self.chain.network(self.chain.small())).axes[0].get_legend().get_texts()
+                          if "region_m" in one.get_text()])
+
     def test_names_of_close_stages_and_dates_in_titles(self):
         """Stages within a small part of the axis share one name; a line of a title does not break inside a date."""
         import figure
