@@ -6,6 +6,7 @@ these (plot_line.py). A point's history ends when it is removed. Displacements c
 each point's own first reading, where its curve begins.
 
 With --pair the curves are of pairs of points: the closure, or a component of the displacement of the first point relative to the second.
+With --without both runs are drawn, so that the difference is the share of creep, also of a closure.
 """
 
 import matplotlib.lines
@@ -111,8 +112,8 @@ def draw_exact(file, axes, names, looks):
                   color=look["color"], linewidth=0.9, linestyle=look["linestyle"])
 
 
-def histories_without(path, file, *options):
-    """The histories of the result file without creep."""
+def histories_without(path, file, histories):
+    """The histories of the result file without creep. histories(file): those that are drawn."""
     with figure.checked(path) as other:
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
             raise figure.NotWanted(f"this was made from another scene than {file.filename}")
@@ -121,7 +122,7 @@ def histories_without(path, file, *options):
         if figure.strength_factor_of(other) != figure.strength_factor_of(file):
             raise figure.NotWanted(f"this run has strengths / {figure.strength_factor_of(other):.4g}, and {file.filename} has strengths / "
                                    f"{figure.strength_factor_of(file):.4g}; expected the same")
-        return Histories(other, *options)
+        return histories(other)
 
 
 def draw(file, component=None, point=(), readings=False, since_reset=False, without=None, closed_form=None, pair=()):
@@ -132,10 +133,13 @@ def draw(file, component=None, point=(), readings=False, since_reset=False, with
     if component not in (OF_PAIRS if pair else LABELS):
         raise figure.NotWanted(f"--component {component} is not of {'pairs' if pair else 'single points'}; expected "
                                f"{', '.join(OF_PAIRS if pair else LABELS)}")
-    if pair and (point or readings or since_reset or without or closed_form):
-        raise figure.NotWanted("--pair goes with --component only")
-    options = component, point, readings, since_reset
-    histories = OfPairs(file, component, pair) if pair else Histories(file, *options)
+    if pair and (point or readings or since_reset or closed_form):
+        raise figure.NotWanted("--pair goes with --component and --without only")
+
+    def histories_of(result):
+        return OfPairs(result, component, pair) if pair else Histories(result, component, point, readings, since_reset)
+
+    histories = histories_of(file)
     names = histories.names
     plot, axes = figure.plt.subplots(figsize=(figure.TWO_COLUMNS * 0.8, 3.4))
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
@@ -159,7 +163,7 @@ def draw(file, component=None, point=(), readings=False, since_reset=False, with
         axes.plot(histories.time[shown], histories.values[shown, i], zorder=3, **drawn)
         entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}" if exact else name, **look))
     if without:
-        other = histories_without(without, file, *options)
+        other = histories_without(without, file, histories_of)
         thin = {"linestyle": (0, (4, 2)), "linewidth": 0.7}
         for i, look in enumerate(looks):
             shown = other.shown[:, i]

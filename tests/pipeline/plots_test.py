@@ -294,6 +294,24 @@ class Plots(ChainTest):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn(f"jointgen {folder}/scene.toml -o {folder}/results/network.h5", done.stdout)
 
+    def test_share_of_creep_in_a_closure(self):
+        """A pair of points is drawn with and without creep."""
+        import figure
+        from jointcreep import plots, read
+
+        result, without = (self.chain.result(self.chain.small(), *options) for options in ((), ("--no-creep",)))
+        for component, of in (None, lambda history: history.closure("crest", "floor")), ("y", lambda history: history.relative(
+                "crest", "floor")[:, 1]):
+            picture = plots.draw("histories", result, pair=[("crest", "floor")], without=without, component=component)
+            drawn = [line.get_ydata() for line in picture.axes[0].lines if len(line.get_ydata()) > 2]
+            self.assertEqual(len(drawn), 2)
+            for curve, path in zip(drawn, (result, without)):
+                wanted = 1e3 * of(read(path).history())
+                numpy.testing.assert_allclose(curve, wanted[numpy.isfinite(wanted)], atol=1e-9)
+            self.assertGreater(abs(drawn[0][-1] - drawn[1][-1]), 1e-6)
+            self.assertIn("without creep", [text.get_text() for text in picture.axes[0].get_legend().get_texts()])
+            figure.plt.close(picture)
+
     def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))
         picture = result.with_name("picture.png")
