@@ -154,7 +154,7 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
                          units="inches", width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6,
                          zorder=5)
     add_key(axes, arrows, round_below(longest), "mm")
-    if figure.ending_of(file):
+    if figure.ending_of(file) and state == len(figure.array(file, "/states/time")) - 1:  # then there are red arrows, too
         return [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, marker=5, markevery=[1],
                                         label="black arrows: displacement in the last recorded state")]
     return []

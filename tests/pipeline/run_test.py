@@ -212,6 +212,14 @@ class Run(ChainTest):
         self.assertIn(f"{number} moving blocks (", axes.get_legend().get_texts()[-1].get_text())
         self.assertIn("; these fill most of the section", axes.get_legend().get_texts()[-1].get_text())
         self.assertLess(axes.get_xlim()[0], 0)
+
+        # Arrows of an earlier state are not those of the last one.
+        with h5py.File(self.folder / "all.h5", "r+") as file:
+            file["/states/displacement"][...] = 0.001
+        for state, has_label in ("last", True), ("0", False):
+            legend = plots.draw("state", self.folder / "all.h5", state=state).axes[0].get_legend()
+            labels = [text.get_text() for text in legend.get_texts()] if legend else []
+            self.assertEqual("black arrows: displacement in the last recorded state" in labels, has_label)
         plots.figure.plt.close("all")
 
         # The answer is known the next time, and how many warnings there were.
