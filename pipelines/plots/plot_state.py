@@ -330,6 +330,11 @@ def length_text(metres):
     return f"{metres:.3g} m" if metres >= 1 else f"{1e3 * metres:.3g} mm"
 
 
+def with_short_lengths(reason):
+    """Why a run ended, with lengths as the legends have them. Places, "[x, y] m", stay."""
+    return re.sub(r"(?<!\S)(\d+\.?\d*(?:e[+-]\d+)?) m\b", lambda found: length_text(float(found[1])), reason)
+
+
 def draw_failure(file, section, axes, fills=""):
     """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
     arrows are in proportion to their motion; the fastest one's is as long as the moving blocks together, within 3 and 10 percent of
@@ -438,13 +443,15 @@ def draw(file, state="last", field="displacement", component="major", since_rese
         title += f"; {figure.creep_of(file)}"
     if magnify:
         title += "; positions displaced" + (f" {magnify:g} times" if magnify != 1 else "")
+    if file.attrs["realization"]:
+        title += f"; realization {file.attrs['realization']} of the network"
     factor = figure.strength_factor_of(file)
     title = f"Strengths / {factor:.4g}: {title}" if factor != 1 else title
     plot.says_factor = True
     if is_end:
         entries += draw_failure(file, section, axes, fills) + draw_unbalanced(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
-        title += f"\n{reason}"
+        title += f"\n{with_short_lengths(reason)}"
     lines = [part for line in title.splitlines() for part in figure.wrapped(line, int(15 * plot.get_figwidth()))]
     plot.set_figheight(plot.get_figheight() + 0.13 * (len(lines) - 1))
     if getattr(axes, "has_key", False):

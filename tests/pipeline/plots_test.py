@@ -549,6 +549,15 @@ class Plots(ChainTest):
         self.assertFalse([one for one in plots.draw("blocks", self.chain.network(self.chain.small())).axes[0].get_legend().get_texts()
                           if "region_m" in one.get_text()])
 
+    def test_lengths_in_titles(self):
+        """As in legends; places stay in metres."""
+        from plot_state import with_short_lengths
+        for reason, title in (("the rock at [-9, -1.436] m is moving: 0.000965 m in the last 5000 steps", "the rock at [-9, -1.436] m is moving: "
+                               "0.965 mm in the last 5000 steps"), ("has moved 2.5 m and is still moving", "has moved 2.5 m and is still moving"),
+                              ("by estimate 3.1e-05 m remain; 4 m2", "by estimate 0.031 mm remain; 4 m2"),
+                              ("at [5, 7] m; stopped by a signal", "at [5, 7] m; stopped by a signal")):
+            self.assertEqual(with_short_lengths(reason), title)
+
     def test_names_of_close_stages_and_dates_in_titles(self):
         """Stages within a small part of the axis share one name; a line of a title does not break inside a date."""
         import figure

@@ -4,6 +4,7 @@ import base64
 import html
 import json
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -192,7 +193,10 @@ class Run(ChainTest):
         np.testing.assert_allclose(arrows[0].XY, failure["/failure/place"])
         np.testing.assert_allclose(np.column_stack([arrows[0].U, arrows[0].V]), failure["/failure/motion"])
         title = axes.get_title(loc="left").replace("\n", " ")
-        self.assertIn(reason.removeprefix("no equilibrium: "), title)
+        metres = re.search(r": (\S+) m in the last", reason)[1]
+        self.assertLess(float(metres), 1)  # in mm, as the scale and the legend
+        self.assertIn(reason.removeprefix("no equilibrium: ").replace(f"{metres} m", f"{1e3 * float(metres):.3g} mm"), title)
+        self.assertNotIn("realization", title)
         labels = [text.get_text() for text in axes.get_legend().get_texts()]
         self.assertIn("excavated then: bench", labels)
         longest = f"{1e3 * np.linalg.norm(failure['/failure/motion']):.3g} mm in 5000 steps of the solver"
@@ -216,6 +220,9 @@ class Run(ChainTest):
         # Arrows of an earlier state are not those of the last one.
         with h5py.File(self.folder / "all.h5", "r+") as file:
             file["/states/displacement"][...] = 0.001
+            file.attrs["realization"] = 7
+        title = plots.draw("state", self.folder / "all.h5").axes[0].get_title(loc="left")
+        self.assertIn("realization 7 of the network", title.replace("\n", " "))
         for state, has_label in ("last", True), ("0", False):
             legend = plots.draw("state", self.folder / "all.h5", state=state).axes[0].get_legend()
             labels = [text.get_text() for text in legend.get_texts()] if legend else []
