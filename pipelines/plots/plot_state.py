@@ -83,8 +83,16 @@ class Section:
         self.zones = figure.array(file, "/mesh/zone_gridpoint")[self.there]
         self.triangles = matplotlib.tri.Triangulation(*self.position.T, self.zones)
 
+        inside = self.is_seen(self.position)[self.zones].any(axis=1)
+        self.seen = inside if inside.any() else ~inside  # which of the zones the picture shows, even in part; those make its scale
+
         # A number for every place; the gridpoints on the sides of a joint share it.
         self.place = np.unique(self.start, axis=0, return_inverse=True)[1].reshape(-1)
+
+    def is_seen(self, places):
+        """Which places are in the window; all without one."""
+        low, high = np.reshape(self.window, (2, 2)) if self.window else (-np.inf, np.inf)
+        return np.all((low <= places) & (places <= high), axis=1)
 
     def borders(self):
         """Sides of zones on the outline of what is there, and those on joints: pairs of gridpoints [side, 2]."""
@@ -119,6 +127,13 @@ def draw_borders(section, axes, joints=True):
                                        zorder=2.5))
 
 
+def lines_of(label, width):
+    """A label in as few lines as this width [characters] permits, about equally long. A unit is on one line with the word before it."""
+    kept = label.replace(" (", "\u00a0(")
+    broken = [textwrap.wrap(kept, one, break_long_words=False, break_on_hyphens=False) for one in range(max(width, 1), 0, -1)]
+    return "\n".join([lines for lines in broken if len(lines) == len(broken[0])][-1]).replace("\u00a0", " ")
+
+
 def add_scale(axes, colored, label, low, high, values):
     """A colour scale as high as the axes, with a pointed end where values lie beyond it. Beside low axes its label is horizontal."""
     width = axes.figure.get_figwidth() - 1.7  # of the axes [in]
@@ -126,24 +141,24 @@ def add_scale(axes, colored, label, low, high, values):
     bar = axes.figure.colorbar(colored, cax=axes.inset_axes([1 + 0.12 / width, 0, 0.14 / width, 1]),
                                extend=figure.extension(values, low, high))
     if height < 1.8:
-        bar.set_label("\n".join(textwrap.wrap(label, 16)), rotation=0, ha="left", va="center")
+        bar.set_label(lines_of(label, 16), rotation=0, ha="left", va="center")
     else:
-        bar.set_label("\n".join(textwrap.wrap(label, int(16 * height))))
+        bar.set_label(lines_of(label, int(16 * height)))
 
 
 def draw_displacement(file, state, section, axes, since_reset, limits):
     size = 1e3 * np.linalg.norm(section.displacement, axis=1)
-    largest = size[np.unique(section.zones)].max()
+    seen = size[np.unique(section.zones[section.seen])]
+    largest = seen.max()
     if largest == 0 and not limits:
         axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
         draw_borders(section, axes)
-        return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label="no displacement in this state")]
+        return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label="no displacement in this state" + " and part" * bool(section.window))]
     low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
     since = "reset" if since_reset else "the in-situ equilibrium"
-    add_scale(axes, colored, f"displacement since {since} (mm)", low, high,
-              size[np.unique(section.zones)])
+    add_scale(axes, colored, f"displacement since {since} (mm)", low, high, seen)
     draw_borders(section, axes)
 
     chosen, spacing = section.on_grid(26)
@@ -182,7 +197,7 @@ def principal(stress):
 
 def draw_crosses(section, stress, axes):
     """Principal stresses on a coarse grid, as crosses along their directions. Legend entries name the largest of all
-    zones."""
+    zones in the picture."""
     chosen, spacing = section.on_grid(26)
     major, minor, angle = principal(1e-6 * stress[chosen])  # [MPa]
     place = section.position[section.zones[chosen]].mean(axis=1)
@@ -200,10 +215,10 @@ def draw_crosses(section, stress, axes):
         drawn = axes.quiver(*places[of_sign].T, *arms[of_sign].T, color=color, width=width, **look)
         if sign > 0 and usual > 0:
             add_key(axes, drawn, round_below(usual), "MPa")
-        largest = (sign * np.concatenate(principal(1e-6 * stress)[:2])).max()
+        largest = (sign * np.concatenate(principal(1e-6 * stress[section.seen])[:2])).max()
         if np.any(of_sign):
             entries.append(matplotlib.lines.Line2D([], [], color=color, linewidth=72 * width,
-                                                   label=f"{label} principal stress, up to {largest:.2g} MPa"))
+                                                   label=f"{label} principal stress, up to {float(f'{largest:.2g}'):g} MPa"))
     return entries
 
 
@@ -213,12 +228,12 @@ def draw_stress(file, state, section, axes, component, limits):
     value = 1e-6 * {"major": major, "minor": minor, "mean": (major + minor) / 2,
                     "xx": -stress[:, 0], "yy": -stress[:, 1]}[component]
     # A few zones in corners would take most of the scale.
-    low, high = limits or np.percentile(value, [0.5, 99.5])
+    low, high = limits or np.percentile(value[section.seen], [0.5, 99.5])
     if not low < high:
         low, high = low - 0.5, high + 0.5
     colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high,
                              edgecolors="face", linewidth=0.1, rasterized=True)
-    add_scale(axes, colored, f"{COMPONENTS[component]}, compressive (MPa)", low, high, value)
+    add_scale(axes, colored, f"{COMPONENTS[component]}, compressive (MPa)", low, high, value[section.seen])
     draw_borders(section, axes)
     return draw_crosses(section, stress, axes) if component in ("major", "minor") else []
 
@@ -268,9 +283,7 @@ def draw_contacts(file, state, section, axes):
 
     slip = np.abs(figure.array(file, "/states/slip")[state])
     slipped = (status == STUCK) & (slip > SLIPPED * slip.max(initial=0))
-    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-    centre = figure.array(file, "/mesh/contact_centre")
-    seen = np.all((low <= centre) & (centre <= high), axis=1) if section.window else np.full(len(status), True)
+    seen = section.is_seen(figure.array(file, "/mesh/contact_centre"))
     entries = []
     extended = figure.untraced_edges(file)[figure.array(file, "/mesh/contact_edge")]  # of contacts
     for chosen, label, look in (((status == STUCK) & ~slipped & ~extended, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
@@ -292,22 +305,15 @@ def draw_contacts(file, state, section, axes):
         axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
                                            zorder=code + 1))
         size = thick if largest > 0 else thin
-        entry = matplotlib.lines.Line2D([], [], color=color, linewidth=size, label=f"{count} {label}")
-        if largest > 0:
-            kind = "shear displacement" if code == SLIPPING else "opening"
-            entry.set_label(f"{count} {label}; this width: {kind} {length_text(largest)}")
+        kind = "shear displacement" if code == SLIPPING else "opening"
+        of_width = f"; this width: {kind} {length_text(largest)} since the in-situ state, thinnest: 0" if largest > 0 else \
+            f"; no {kind} since the in-situ state" if count else ""
+        entry = matplotlib.lines.Line2D([], [], color=color, linewidth=size, label=f"{count} {label}{of_width}")
         if code == OPEN:  # two walls with a gap between them, in grey print too
             axes.add_collection(LineCollection(lines[chosen], color="w", linewidth=0.45 * width, capstyle="round",
                                                zorder=code + 1.5))
             with_gap(entry, size, color)
         entries.append(entry)
-    for code, color in ((SLIPPING, figure.COLORS[0]), (OPEN, figure.COLORS[1])):
-        if np.any((status == code) & seen):
-            entries.append(matplotlib.lines.Line2D([], [], color=color, linewidth=thin,
-                                                   label="thinnest: no displacement since the in-situ state"))
-            if code == OPEN:
-                with_gap(entries[-1], thin, color)
-            break
     return entries + figure.draw_region_borders(figure.scene_of(file), axes)
 
 

@@ -418,7 +418,36 @@ class Plots(ChainTest):
         said = {label: handle.get_linewidth() for label, handle in in_legends(picture).items()}
         slips = next(width for label, width in said.items() if "slipping; this width: shear displacement" in label)
         self.assertEqual(slips, max(drawn))  # that of the largest slip
-        self.assertLess(said["thinnest: no displacement since the in-situ state"], slips)
+        self.assertTrue(all("this width" in label for label in said if "thinnest" in label), said)  # no sign of its own
+
+    def test_scale_of_a_window(self):
+        """Colours are those of what the window shows; so are the numbers of the legend. Units stand beside a word."""
+        import figure
+        import plot_state
+        from jointcreep import plots
+
+        result, window = self.chain.result(self.chain.small(), "--no-creep"), (1, 1, 9, 9)
+        found = datasets(result)
+        zones = found["/mesh/zone_gridpoint"][found["/states/zone_present"][-1] == 1]
+        inside = ((found["/mesh/gridpoint_position"] > 1) & (found["/mesh/gridpoint_position"] < 9)).all(axis=1)[zones].any(axis=1)
+        size = 1e3 * numpy.linalg.norm(found["/states/displacement"][-1], axis=1)
+        drawn = {}
+        for field in "displacement", "stress":
+            picture = plots.draw("state", result, window=window, field=field)
+            picture.canvas.draw()
+            drawn[field] = next(one.norm for one in picture.axes[0].collections if one.get_array() is not None)
+            labels = [text.get_text() for text in picture.findobj(figure.matplotlib.text.Text) if "(" in text.get_text()]
+            self.assertFalse([label for label in labels for line in label.splitlines() if line in ("(mm)", "(MPa)")], labels)
+            figure.plt.close(picture)
+        self.assertAlmostEqual(drawn["displacement"].vmax, size[zones[inside]].max())
+        self.assertLess(drawn["displacement"].vmax, size[zones].max())
+        stress = found["/states/stress"][-1][found["/states/zone_present"][-1] == 1][inside]
+        wanted = numpy.percentile(1e-6 * plot_state.principal(stress)[0], [0.5, 99.5])
+        numpy.testing.assert_allclose([drawn["stress"].vmin, drawn["stress"].vmax], wanted)
+        label = "displacement since the in-situ equilibrium (mm)"
+        self.assertEqual(plot_state.lines_of(label, 46), "displacement since the\nin-situ equilibrium (mm)")
+        self.assertEqual(plot_state.lines_of(label, 47), label)
+        self.assertEqual(plot_state.lines_of(label, 16).splitlines()[-1], "equilibrium (mm)")
 
     def test_other_criteria_have_no_line(self):
         """Barton and Bandis's strength is no line of Coulomb's criterion."""
