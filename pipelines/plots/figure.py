@@ -361,25 +361,27 @@ def legend_below(axes, *groups):
                 borderaxespad=0)
 
 
-CLOSE = 0.045  # part of the axes' width that names of stages need, so that they do not overlap
+CLOSE, NEAR = 12, 20  # names of stages that are closer have one label, or are steep, so that they do not touch [pt]
 
 
 def mark_stages(axes, places, names, with_names=True):
-    """Lines across the axes where stages are, and their names over the axes. Stages that are too close for a name each share one."""
-    low, high = axes.get_xlim()
+    """Lines across the axes where stages are, and their names over the axes: steep ones if they are near, and one for stages that are too
+    close for a name each."""
+    point = np.ptp(axes.get_xlim()) / (72 * axes.figure.get_figwidth() * axes.get_position().width)  # on the axis
     groups = []
     for place, name in sorted(zip(places, names), key=lambda one: one[0]):
         axes.axvline(place, color="0.6", linewidth=0.6, zorder=0)
-        if groups and place - groups[-1][-1][0] < CLOSE * (high - low) and place - groups[-1][0][0] < 2 * CLOSE * (high - low):
+        if groups and place - groups[-1][-1][0] < CLOSE * point and place - groups[-1][0][0] < 2 * CLOSE * point:
             groups[-1].append((place, name))
         else:
             groups.append([(place, name)])
+    is_near = any(other[0][0] - one[0][0] < NEAR * point for one, other in zip(groups, groups[1:]))
     for group in groups:
         place, name = group[0]
         if len(group) > 1:
             name = ", ".join(one for _, one in group) if len(group) < 4 else f"{name} to {group[-1][1]} ({len(group)} stages)"
         if with_names:
-            axes.annotate(name, (place, 1.01), xycoords=("data", "axes fraction"), rotation=25, ha="left",
+            axes.annotate(name, (place, 1.01), xycoords=("data", "axes fraction"), rotation=45 if is_near else 25, ha="left",
                           va="bottom", rotation_mode="anchor", fontsize=6.5)
 
 

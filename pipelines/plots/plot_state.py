@@ -153,7 +153,8 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
     if largest == 0 and not limits:
         axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
         draw_borders(section, axes)
-        return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label="no displacement in this state" + " and part" * bool(section.window))]
+        where = "this part of the section" if section.window else "this state"
+        return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label=f"no displacement in {where}")]
     low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)

@@ -1,5 +1,6 @@
 """Plots draw what files of the chain hold, and a picture is there whole or not at all."""
 
+import itertools
 import os
 import re
 import runpy
@@ -594,6 +595,17 @@ class Plots(ChainTest):
         axes.set_xlim(0, 3650)
         figure.mark_stages(axes, [10, 60, 120, 2000], ["heading", "bench 1", "bench 2", "lining"])
         self.assertEqual([text.get_text() for text in axes.texts], ["heading, bench 1, bench 2", "lining"])
+        for width, places in itertools.product((6.9, 5.5, 3.5), ([0, 220, 440, 660], [0, 100, 300, 1500], [0, 172, 344, 516], [0, 1000, 2000, 3000])):
+            plot = figure.plt.figure(figsize=(width, 3))  # as histories, and those of a study
+            self.addCleanup(figure.plt.close, plot)
+            axes = plot.add_subplot()
+            axes.set_xlim(0, 3650)
+            figure.mark_stages(axes, places, ["top heading", "bench 1", "bench 2", "bench 3"])
+            plot.canvas.draw()
+            for one, other in zip(axes.texts, axes.texts[1:]):  # distance of the lines of text, over their height
+                across = numpy.diff(axes.transData.transform([(one.xy[0], 0), (other.xy[0], 0)])[:, 0])[0] * numpy.sin(
+                    numpy.radians(one.get_rotation()))
+                self.assertGreater(across, 1.2 * one.get_fontsize() * plot.dpi / 72, places)
         for width in range(20, 40):
             lines = figure.wrapped("stage found no equilibrium on 31 August 2002, after bench 3, day 548", width)
             self.assertEqual((sum("31 August 2002" in line for line in lines), sum("day 548" in line for line in lines)), (1, 1))
