@@ -31,7 +31,7 @@ import matplotlib.ticker
 import matplotlib.transforms
 import numpy as np
 
-LOOK = 5  # one more when pictures look different: those of docs/pictures are stale then (docs/pictures.py)
+LOOK = 6  # one more when pictures look different: those of docs/pictures are stale then (docs/pictures.py)
 
 BOUNDARY, JOINT, WELDED = 0, 1, 2  # /edges/kind
 ONE_COLUMN = 3.35  # [in]
