@@ -31,7 +31,7 @@ OF_STABLE, OR_NONE = ", of stable runs", " or no equilibrium"  # ends of names o
 FEWEST = 10  # values from which convergence is shown
 FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
-NAMED = 10  # failed runs that the summary lists
+NAMED = 20  # failed runs that the summary lists
 SHORT = 90  # characters of a reason there
 LARGEST_FACTOR = 64  # that the search of a factor of safety tries
 
@@ -504,12 +504,24 @@ def in_columns(rows):
                       for place, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
 
 
+def failure_place(row):
+    """ 'stage "bench", 2 moving blocks, 0.31 m2: ' of a run without equilibrium; "" if it is not known."""
+    failure = row.get("failure")
+    if not failure:
+        return ""
+    stage, day, count = failure["stage"], failure["day"], failure["blocks"]
+    when = f'stage "{stage}"' if stage else f"day {files.day_text(day)}" if day else "before the first stage"
+    blocks = "block" if count == 1 else "blocks"
+    what = f"moving {blocks}" if ending_of(row) == MOVING else f"{blocks} that moved most"
+    return f"{when}, {count} {what}, {failure['area']:.4g} m2: "
+
+
 def failure_words(row):
     """A short line on a run that failed."""
     reason = row["reason"].partition(";")[0].removeprefix(f"{row['program']}: ")
     code = "" if row["exit_code"] == NO_EQUILIBRIUM else f"exit code {row['exit_code']}: "
     what = UNDECIDED if ending_of(row) == UNDECIDED else "failed"
-    return f"run {row['run']} {what}: {row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")
+    return f"run {row['run']} {what}: {failure_place(row)}{row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")
 
 
 def missing_words(study, rows):

@@ -109,7 +109,8 @@ def made(study, scene, text, run, programs, folder):
             made_file = arguments[-1]
             codes[made_file] = code
             if code == quantities.NO_EQUILIBRIUM:
-                endings[made_file] = quantities.ending(folder / made_file.replace(".h5", ".failed.h5"))
+                endings[made_file], found = quantities.failure(folder / made_file.replace(".h5", ".failed.h5"))
+                row.setdefault("failure", found)  # of the first one, as quantities.ending_of()
         if code != 0 and row["exit_code"] == 0:
             row.update(exit_code=code, program=name, reason=message)
         if code != 0 and name != "demsolve":

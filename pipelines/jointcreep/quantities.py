@@ -5,7 +5,7 @@ import datetime
 import h5py
 import numpy as np
 
-from . import histories, reading
+from . import files, histories, reading
 from .errors import NotWanted
 
 NO_EQUILIBRIUM = 3  # exit code of demsolve
@@ -105,13 +105,17 @@ def needed(study):
     return {name: is_wanted or name in study.keep for name, is_wanted in {"joints.h5": any(wanted.values()), **wanted}.items()}
 
 
-def ending(path):
-    """MOVING or UNDECIDED, of the file that demsolve leaves of a run without equilibrium; UNDECIDED if it left none."""
+def failure(path):
+    """Of the file that demsolve leaves of a run without equilibrium: MOVING or UNDECIDED; and its stage ("" between stages), the day since the
+    start, and number and area [m2] of the blocks that move, or moved most if it is undecided. UNDECIDED and nothing if it left none."""
     try:
         with h5py.File(path) as file:
-            return MOVING if file["/failure/moves_on"][0] else UNDECIDED
+            block = file["/failure/block"][()]
+            return MOVING if file["/failure/moves_on"][0] else UNDECIDED, {
+                "stage": files.texts(file, "/failure/stage")[0], "day": float(file["/failure/time"][0]),
+                "blocks": len(block), "area": float(file["/blocks/area"][()][block].sum())}
     except (OSError, KeyError):
-        return UNDECIDED
+        return UNDECIDED, {}
 
 
 def ending_of(row):
@@ -126,7 +130,7 @@ def file_of(quantity):
 
 def of_run(study, scene, folder, codes, endings):
     """Values of all quantities, None where there is none. The files of the run are in `folder`, as far as its programs have made
-    them; codes, endings: exit codes of demsolve by the file that it makes, and, of code 3, what ending() says."""
+    them; codes, endings: exit codes of demsolve by the file that it makes, and, of code 3, MOVING or UNDECIDED."""
     values = []
     for one in study.quantities:
         name, value = file_of(one), None

@@ -302,7 +302,7 @@ class Study:
         return tuple(float(table[name][rows[0]]) for name in ("value", "low", "high"))
 
 
-TEXTS = ("no equilibrium", "program", "reason")  # columns of text, also where all fields are empty
+TEXTS = ("no equilibrium", "failure stage", "program", "reason")  # columns of text, also where all fields are empty
 
 
 def csv_table(path):

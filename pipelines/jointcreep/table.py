@@ -11,7 +11,10 @@ from . import files
 from .quantities import ending_of
 from .study_file import LEVEL, NETWORK
 
-FORMAT_VERSION = [1, 1]  # of runs.h5
+WORDS = (LEVEL, "no equilibrium", "failure stage", "program", "reason")  # columns of text, also where all are empty
+OF_FAILURE = [("failure day", "day", "day"), ("moving blocks", "1", "blocks"), ("moving area (m2)", "m2", "area")]  # column, unit, key of a row
+
+FORMAT_VERSION = [1, 2]  # of runs.h5
 
 
 def columns_of(study, rows, given):
@@ -23,7 +26,9 @@ def columns_of(study, rows, given):
                 for at, one in enumerate(study.parameters)]
     columns += [("exit code", "1", [row["exit_code"] for row in rows]),
                 ("no equilibrium", "1", [ending_of(row) for row in rows]),
-                ("program", "1", [row["program"] for row in rows]), ("reason", "1", [row["reason"] for row in rows])]
+                ("program", "1", [row["program"] for row in rows]), ("reason", "1", [row["reason"] for row in rows]),
+                ("failure stage", "1", [row.get("failure", {}).get("stage", "") for row in rows])]
+    columns += [(name, unit, [row.get("failure", {}).get(key) for row in rows]) for name, unit, key in OF_FAILURE]
     columns += [(one.title(), one.unit, [row["values"][at] for row in rows]) for at, one in enumerate(study.quantities)]
     return columns
 
@@ -32,7 +37,7 @@ def hdf5_columns(columns, n_values):
     """The columns of the dataset /runs: name, unit, type, values. The last `n_values` have one more each, which says whether there
     is a value; without one it is 0."""
     for place, (name, unit, values) in enumerate(columns):
-        if any(isinstance(value, str) for value in values) or name in (LEVEL, "no equilibrium", "program", "reason"):
+        if any(isinstance(value, str) for value in values) or name in WORDS:
             coded = [str(value).encode() for value in values]
             yield name, unit, h5py.string_dtype("utf-8", max([1, *map(len, coded)])), coded
         elif place < len(columns) - n_values:
@@ -44,7 +49,7 @@ def hdf5_columns(columns, n_values):
 
 def write_hdf5(path, study, columns, scene):
     """The table as one dataset of records."""
-    found = list(hdf5_columns(columns, len(study.quantities)))
+    found = list(hdf5_columns(columns, len(OF_FAILURE) + len(study.quantities)))
     records = np.zeros(len(columns[0][2]), np.dtype([(name, kind) for name, _, kind, _ in found]))
     for name, _, _, values in found:
         records[name] = values

@@ -147,6 +147,14 @@ class Studies(ChainTest):
         self.assertEqual([float(row[name]) for name in ("value", "low", "high")], list(intervals.mean(values)[:3]))
 
 
+def left_by_failure(path, moves_on, block=(), stage="bench"):
+    """Writes what a study reads of the file that demsolve leaves of a run without equilibrium on day 2. Blocks have 0.5, 1.5, 2.5 ... m2."""
+    with h5py.File(path, "w") as file:
+        for name, value in (("moves_on", [moves_on]), ("stage", [stage.encode()]), ("time", [2.0]), ("block", np.array(block, int))):
+            file[f"/failure/{name}"] = value
+        file["/blocks/area"] = 0.5 + np.arange(9)
+
+
 def rows_of(out):
     with open(out / "runs.csv", encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
@@ -371,8 +379,7 @@ class Failures(Studies):
     def test_a_failed_run(self):
         """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
         made twice. Blocks that move are told from a search without an answer by the file that is left."""
-        with h5py.File(self.folder / "moving.h5", "w") as file:
-            file["/failure/moves_on"] = [1]
+        left_by_failure(self.folder / "moving.h5", 1, [3, 0])
         case = 'case "$PWD" in *work/000001*) echo "demsolve: warning: soon" >&2; echo "demsolve: no equilibrium: on purpose" >&2; ' \
                f'echo "demsolve: the run up to there is in result.failed.h5" >&2; cp "{self.folder}/moving.h5" result.failed.h5; exit 3 ;; esac'
         programs = self.programs(case)
@@ -383,6 +390,15 @@ class Failures(Studies):
         self.assertEqual([row["no equilibrium"] for row in rows], ["", "blocks move", "", ""])
         self.assertEqual((rows[1]["program"], rows[1]["reason"]), ("demsolve", "demsolve: no equilibrium: on purpose"))
         self.assertEqual((rows[1]["floor y (mm)"], rows[1]["failed"]), ("", "1.0"))
+        of_failure = ["failure stage", "failure day", "moving blocks", "moving area (m2)"]
+        self.assertEqual([[row[name] for name in of_failure] for row in rows[:2]], [[""] * 4, ["bench", "2.0", "2", "4.0"]])
+        with h5py.File(out / "runs.h5") as file:
+            table = file["runs"][()]
+            self.assertEqual([list(table[name]) for name in of_failure], [[b"", b"bench", b"", b""], [0, 2, 0, 0], [0, 2, 0, 0], [0, 4, 0, 0]])
+            self.assertEqual(list(table["moving area (m2), is there"]), [0, 1, 0, 0])
+            self.assertEqual(dict(zip(table.dtype.names, file["runs"].attrs["units"]))["moving area (m2)"], b"m2")
+        found = jointcreep.read(out).runs
+        self.assertEqual((list(found["failure stage"])[:2], found["moving area (m2)"][1], found.units["moving area (m2)"]), (["", "bench"], 4, "m2"))
         self.assertGreater(float(rows[1]["blocks, number"]), 1)  # which the network has all the same
         other = self.made(self.written(NETWORKS.format(runs=4).replace('[[collect]]\nwhat = "failed"\n', "")), self.folder / "other",
                           programs=programs)
@@ -392,7 +408,7 @@ class Failures(Studies):
         text = (out / "summary.txt").read_text()
         self.assertIn("without equilibrium  1\n  blocks move        1\n  undecided          0\n", text)
         self.assertIn("\nwarning in 1 of 4 runs: demsolve: soon\n", text)
-        self.assertTrue(text.endswith("run 1 failed: demsolve: no equilibrium: on purpose\n"
+        self.assertTrue(text.endswith("run 1 failed: stage \"bench\", 2 moving blocks, 4 m2: demsolve: no equilibrium: on purpose\n"
                                       "of the point dug away (mm): an excavation takes the point \"dug away\" before, or it is not read yet, "
                                       "in 3 of 4 runs: 0, 2, 3\n"), text)
         with open(out / "answers.csv", encoding="utf-8") as file:
@@ -427,13 +443,11 @@ class Failures(Studies):
 
     def test_an_undecided_run(self):
         """It is neither stable nor failed: probabilities that depend on it have two rows."""
-        with h5py.File(self.folder / "undecided.h5", "w") as file:
-            file["/failure/moves_on"] = [0]
+        left_by_failure(self.folder / "undecided.h5", 0, [1], "")
+        left_by_failure(self.folder / "moving.h5", 1, [2])
         case = f'case "$PWD" in *work/000001*) cp "{self.folder}/undecided.h5" result.failed.h5 ;; *work/000002*) ;; *work/000003*) ' \
                f'cp "{self.folder}/moving.h5" result.failed.h5 ;; *) exec "{self.chain.programs}/demsolve" "$@" ;; esac; ' \
                '[ "$1" = --version ] && exec "{{folder}}/demsolve" "$@"; echo "demsolve: no equilibrium: why" >&2; exit 3'
-        with h5py.File(self.folder / "moving.h5", "w") as file:
-            file["/failure/moves_on"] = [1]
         out = self.made(self.written(NETWORKS.format(runs=6)), self.folder / "out", programs=self.programs(case))
         rows = rows_of(out)
         self.assertEqual([row["exit code"] for row in rows], ["0", "3", "3", "3", "0", "0"])
@@ -453,8 +467,9 @@ class Failures(Studies):
         self.assertIn("without equilibrium  3\n  blocks move        1\n  undecided          2\n", text)
         self.assertIn("warning: 2 of 6 runs ended undecided: whether they have an equilibrium is not known. They have no value; ", text)
         self.assertRegex(text, "probability of no equilibrium, at least +6 ")
-        self.assertIn("run 1 undecided: demsolve: no equilibrium: why\n", text)
-        self.assertIn("run 3 failed: demsolve: no equilibrium: why\n", text)
+        self.assertIn("run 1 undecided: day 2, 1 block that moved most, 1.5 m2: demsolve: no equilibrium: why\n", text)
+        self.assertIn("run 2 undecided: demsolve: no equilibrium: why\n", text)  # which left no file
+        self.assertIn('run 3 failed: stage "bench", 1 moving block, 2.5 m2: demsolve: no equilibrium: why\n', text)
         subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
         page = (self.folder / "r.html").read_text()
         for what, count in (("blocks move", 1), ("undecided", 2)):
@@ -468,24 +483,41 @@ class Failures(Studies):
                          self.made(study, self.folder / "out", programs=self.programs(case)))
 
     def test_lines_of_failures(self):
-        """Short ones, ten at most, and of both kinds of runs without equilibrium; warnings of one kind are counted together."""
+        """Short ones, twenty at most, and of both kinds of runs without equilibrium; warnings of one kind are counted together."""
         study = study_file.read(self.written(NETWORKS.format(runs=30)))
         moving = "demsolve: no equilibrium: the rock is moving; on day 2; moving blocks: block 73 at [1, 2] m by [0.1, 0.2] m; and more"
         undecided = "demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016; " + "word " * 300
-        rows = [{"run": run, "exit_code": 3 if run < 12 else 0, "program": "demsolve" if run < 12 else "", "values": [None] * 4 + [1.0],
-                 "reason": "" if run >= 12 else moving if run % 4 else undecided,
-                 "no_equilibrium": {"result.h5": "blocks move" if run % 4 else "undecided"} if run < 12 else {},
+        rows = [{"run": run, "exit_code": 3 if run < 24 else 0, "program": "demsolve" if run < 24 else "", "values": [None] * 4 + [1.0],
+                 "reason": "" if run >= 24 else moving if run % 4 else undecided,
+                 "no_equilibrium": {"result.h5": "blocks move" if run % 4 else "undecided"} if run < 24 else {},
                  "warnings": [f'jointgen: {50 + run}.5 percent of joint set "J1" are cut back'] * (run % 2)} for run in range(30)]
         text = answers.summary(study, rows, "", [], [])
-        self.assertIn("without equilibrium  12\n  blocks move        9\n  undecided          3\n", text)
+        self.assertIn("without equilibrium  24\n  blocks move        18\n  undecided          6\n", text)
         self.assertIn('\nwarning in 15 of 30 runs: jointgen: 51.5 percent of joint set "J1" are cut back\n', text)
         lines = [line for line in text.splitlines() if line.startswith("run ")]
         self.assertEqual(lines[:2], ["run 0 undecided: demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016",
                                      "run 1 failed: demsolve: no equilibrium: the rock is moving"])
-        self.assertEqual(text.splitlines()[text.splitlines().index(lines[-1]) + 1], "and 2 more in runs.csv")
-        self.assertEqual(len([line for line in lines if " failed: " in line or " undecided: " in line]), 10)
+        self.assertEqual(text.splitlines()[text.splitlines().index(lines[-1]) + 1], "and 4 more in runs.csv")
+        self.assertEqual(len([line for line in lines if " failed: " in line or " undecided: " in line]), 20)
         many = answers.failure_words({**rows[0], "reason": "demsolve: " + "word " * 300})
         self.assertLess(len(many), 130)
+        for more, words in (({"stage": "", "day": 0.0}, "before the first stage, 2 moving blocks, 12.35 m2"), ({"stage": "", "day": 548.5}, "day 548.5, 2"),
+                            ({"stage": "bench 3", "day": 2.0}, 'stage "bench 3", 2 moving')):
+            self.assertIn(f"run 1 failed: {words}", answers.failure_words({**rows[1], "failure": {"blocks": 2, "area": 12.3456, **more}}))
+
+    def test_moving_blocks(self):
+        """Their number and area are those of the files that the runs leave."""
+        text = re.sub(r"(?m)^cohesion_MPa.*", "cohesion_MPa = 0", SCENE).replace("mean_deg = 5,", "mean_deg = -25,")
+        text = re.sub(r"(?m)^tensile_strength_MPa.*", "tensile_strength_MPa = 0", text).replace("friction_angle_deg = 35", "friction_angle_deg = 8")
+        (self.folder / "scene.toml").write_text(text)
+        out = self.made(self.written('keep = ["result.failed.h5"]\n' + NETWORKS.format(runs=3)), self.folder / "out", "-j2")
+        failed = [row for row in rows_of(out) if row["no equilibrium"]]
+        self.assertGreater(len(failed), 1)
+        for row in failed:
+            of = jointcreep.read(out / "kept" / f"{int(row['run']):06d}-result.failed.h5").moving_blocks()
+            self.assertEqual(int(row["moving blocks"]), of.rows())
+            self.assertAlmostEqual(float(row["moving area (m2)"]), np.sum(of["area"]), places=9)
+            self.assertIn(f"run {row['run']} failed: stage \"bench\", {of.rows()} moving block", (out / "summary.txt").read_text())
 
     def test_chance_correlation(self):
         """Of few sets of values; more than 2 / sqrt(N) is a warning. Pairs with a [[correlation]] do not count."""
