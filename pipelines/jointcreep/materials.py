@@ -3,6 +3,10 @@
 A key of a scene ends with its unit: normal_stiffness_MPa_per_m becomes "normal stiffness" and "MPa/m".
 """
 
+import math
+
+from . import scene_keys
+
 UNITS = {"MPa_day_per_m": "MPa day/m", "GPa_day": "GPa day", "MPa_per_m": "MPa/m", "kg_per_m3": "kg/m3", "m2_per_MJ": "m2/MJ",
          "per_m3": "1/m3", "per_m2": "1/m2", "per_m": "1/m", "MPa": "MPa", "GPa": "GPa", "deg": "degrees", "mm": "mm", "m": "m"}
 NAMES = {"youngs_modulus": "Young's modulus E", "poissons_ratio": "Poisson's ratio",
@@ -43,6 +47,37 @@ def law_in_words(law):
         else:
             words.append(f"{LAW_WORDS.get(stem, stem.replace('_', ' '))} {with_unit(value, unit)}")
     return ", ".join(words)
+
+
+def in_runs(parameter, value):
+    """The values that a key of this value in the scene has in the runs of a study, by the Parameter that changes it: "2000 to 10000"."""
+    factor = value if parameter.multiplies else 1
+    if any(isinstance(one, str) for one in parameter.values):
+        return " or ".join(dict.fromkeys(map(str, parameter.values)))
+    has_mean = "mean" in parameter.constants  # a normal or lognormal law, which may be cut off at one end or both
+    if parameter.values:
+        ends = [min(parameter.values), max(parameter.values)]
+    elif has_mean:
+        ends = [parameter.lowest, parameter.highest]
+    else:
+        ends = [parameter.constants["lowest"], parameter.constants["highest"]]
+    low, high = sorted(factor * end for end in ends) if factor else (0, 0)
+    if not has_mean:
+        return f"{number(low)} to {number(high)}"
+    cut = [f"at least {number(low)}"] * math.isfinite(low) + [f"at most {number(high)}"] * math.isfinite(high)
+    mean, deviation = factor * parameter.constants["mean"], abs(factor * parameter.constants["deviation"])
+    return ", ".join([f"{parameter.law}, mean {number(mean)}", f"standard deviation {number(deviation)}", *cut])
+
+
+def varied(study, scene):
+    """Each key of a scene that a study changes: name of the parameter, key, the scene's value, and that of the runs in words."""
+    return [(one.name, key, value, in_runs(one, value)) for one in study.parameters for key in one.keys
+            for value in [scene_keys.value_at(scene, key)]]
+
+
+def marked(study, scene):
+    """A scene in which the values that a study changes are words that say so, for tables()."""
+    return scene_keys.changed(scene, {key: f'varies by "{name}": {words}' for name, key, _, words in varied(study, scene)})
 
 
 def flat(table):

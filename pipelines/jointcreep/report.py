@@ -97,11 +97,11 @@ def settings(scene):
     return "<p>Keys of the scene; all others have their defaults.</p>" + table(["table", "key", "value"], rows)
 
 
-def materials_of(scene):
-    """Parts of the page about rocks and joints."""
+def materials_of(scene, more=""):
+    """Parts of the page about rocks and joints. more: what is said above the tables."""
     parts = ["<h2>Materials and joint sets</h2>",
              "<p>Strengths are those of the scene: a strength factor divides them. Tensile strengths are positive. A property without a value "
-             "has its default, or is not there.</p>"]
+             f"has its default, or is not there.{more}</p>"]
     for heading, heads, rows in materials.tables(scene):
         parts += [f"<h3>{heading}</h3>", table(heads, rows)]
     return parts
@@ -338,6 +338,14 @@ def histories_of(out):
     return ["<h2>Histories</h2>", *drawn_ones] if drawn_ones else []
 
 
+def what_varies(study, scene):
+    """Parts of the page: what the study changes from run to run."""
+    parts = ["<h2>What varies</h2>"] + ["<p>The network.</p>"] * study.varies_network
+    if study.parameters:
+        parts.append(table(["parameter", "key of the scene", "in the scene", "in the runs"], materials.varied(study, scene)))
+    return parts
+
+
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
     from . import answers  # takes long to load
@@ -353,6 +361,7 @@ def of_study(out, programs, folder):
         *((f"runs without equilibrium: {what}", sum(row["no equilibrium"] == what for row in rows)) for what in (MOVING, UNDECIDED)),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
         ("runs that were repeated", sum(row["attempts"] != "1" for row in times)), ("processor time of the programs (hours)", hours)])]
+    parts += what_varies(study, scene)
     with tempfile.TemporaryDirectory(dir=folder) as work:
         network = pathlib.Path(work) / "network.h5"
         done = subprocess.run([programs / "jointgen", out / "scene.toml", "-o", network], capture_output=True, text=True)
@@ -386,10 +395,13 @@ def of_study(out, programs, folder):
         parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in lines[:MOST_ROWS]) + "</ul>" if lines else "<p>None.</p>")
     parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
-    parts += ["<h2>Settings</h2>", settings(scene), "<h2>Versions</h2>",
-              table(["program", "version"], found["identity"]["the programs' versions"].items()), *materials_of(scene),
+    marked = materials.marked(study, scene)
+    parts += ["<h2>Settings</h2>", settings(marked), "<h2>Versions</h2>",
+              table(["program", "version"], found["identity"]["the programs' versions"].items()),
+              *materials_of(marked, " Values with <i>varies by</i> change from run to run: these are the values in the runs, not that of the scene."),
               "<h2>Study file</h2>", f"<pre>{escaped((out / 'study.toml').read_text('utf-8'))}</pre>",
-              "<h2>Scene</h2>", f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
+              "<h2>Scene</h2>", "<p>As it is written, before the study changes values (section What varies).</p>" * bool(study.parameters),
+              f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
     return study.title or f"Study of {scene.get('title', out.name)}", parts
 
 

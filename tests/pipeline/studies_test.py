@@ -1232,6 +1232,37 @@ class Reports(Studies):
         self.assertGreaterEqual(page.count("<img"), 6)
         self.assertIn("in 12 of 12 runs", page)
 
+    def test_values_that_vary(self):
+        """Each value that a parameter changes is marked, with its values in the runs in place of the scene's."""
+        vary = '[[vary]]\nname = "stiffness & more"\nmultiplies = true\nvalues = [2, 10, 5]\nkey = ["joint_material.joint.normal_stiffness_MPa_per_m", ' \
+            '"joint_material.joint.shear_stiffness_MPa_per_m"]\n[[vary]]\nname = "spacing"\nkey = "joint_set.steep.spacing.mean_m"\n' \
+            'values = [5, 7]\n[[vary]]\nkey = "zones.size_m"\nvalues = [4, 5]\n'
+        page = self.report(self.made(self.written(NETWORKS.format(runs=2) + vary), self.folder / "out"))
+        part = page[page.index("<h2>Materials and joint sets</h2>"):]
+        part = html.unescape(part[:part.index("<h2>Study file</h2>")])
+        self.assertIn('<td>normal stiffness</td><td>MPa/m</td><td>varies by "stiffness & more": 10000 to 50000</td>', part)
+        self.assertIn('<td>shear stiffness</td><td>MPa/m</td><td>varies by "stiffness & more": 4000 to 20000</td>', part)
+        self.assertIn('mean varies by "spacing": 5 to 7 m, standard deviation 2 m', part)
+        self.assertIn('<td>friction angle</td><td>degrees</td><td class="number">35</td>', part)
+        self.assertIn("change from run to run", part)
+        self.assertIn('<td>zones</td><td>size_m</td><td>varies by "zones.size_m": 4 to 5</td>', html.unescape(page))
+        self.assertIn('<td>spacing</td><td>joint_set.steep.spacing.mean_m</td><td class="number">6</td><td>5 to 7</td>', page)
+
+    def test_values_in_runs(self):
+        study = NETWORKS.format(runs=2) + "[[vary]]\nkey = 'a'\n"
+        for law, value, words in (("values = ['x', 'y', 'x']", "x", "x or y"), ("values = [0.5, 2]\nmultiplies = true", -3, "-6 to -1.5"),
+                                  ("law = 'uniform'\nlowest = 1\nhighest = 2\nmultiplies = true", 1000, "1000 to 2000"),
+                                  ("law = 'triangular'\nlowest = 1\nmost_likely = 2\nhighest = 4", 9, "1 to 4"),
+                                  ("law = 'normal'\nmean = 1\ndeviation = 0.1\nmultiplies = true", 50, "normal, mean 50, standard deviation 5"),
+                                  ("law = 'lognormal'\nmean = 2\ndeviation = 1\nlowest = 0.5", 9, "lognormal, mean 2, standard deviation 1, at least 0.5"),
+                                  ("law = 'normal'\nmean = 1\ndeviation = 1\nlowest = 0.5\nmultiplies = true", -2,
+                                   "normal, mean -2, standard deviation 2, at most -1"),
+                                  ("law = 'normal'\nmean = 2\ndeviation = 1\nlowest = 0.5\nhighest = 3", 9,
+                                   "normal, mean 2, standard deviation 1, at least 0.5, at most 3")):
+            with self.subTest(words):
+                (parameter,) = study_file.read(self.written(study + law)).parameters
+                self.assertEqual(materials.in_runs(parameter, value), words)
+
     def test_refusals(self):
         for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
                              (self.chain.network(SCENE), 2)):
