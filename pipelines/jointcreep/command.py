@@ -21,6 +21,7 @@ fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CS
 Options:
   -o [ --output ] OUT       the folder of a run or study, or the report or sets to write; - is standard output
   -j [ --jobs ] N           study: runs at a time (default 1)
+  --finish                  study: make no more runs; answers, pictures and report are of those that have ended
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
   --realization R           run: which of the seed's networks (default 0)
   --pairs PAIRS             report: pairs of points for closures: "left wall,right wall; crown,floor" (default: all)
@@ -73,7 +74,7 @@ from .errors import NotDone, NotWanted, have_linear_algebra, lacks_memory
 FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
                "scanline-trend", "scanline-plunge")
 OF_ALL = {"-o": "output", "--output": "output", "--programs": "programs"}  # options of every subcommand
-FLAGS = {"quiet", "makefile"}  # options without a value
+FLAGS = {"quiet", "makefile", "finish"}  # options without a value
 
 
 @dataclasses.dataclass
@@ -175,7 +176,15 @@ def study(source, options, beside):
         raise NotWanted(f"--snakemake: {profile} has no config.yaml; expected the folder of a profile")
     out, quiet = pathlib.Path(options["output"]).resolve(), options.get("quiet", False)
     with runs.locked(out) as lock:
+        if options.get("finish") and not (out / "plan.json").exists():
+            raise NotWanted(f"--finish: {out} is not the folder of a study; expected one that was stopped")
         plan.make(of_study, out, programs)
+        if options.get("finish"):
+            rows = ended_rows(of_study, out)
+            if not rows:
+                raise NotWanted(f"--finish: no run has ended in {out}; the same command without --finish makes the runs")
+            ended = sum((row["run"] < 0) == (of_study.design.directions > 0) for row in rows)  # replicates, or runs
+            return finish(of_study, out, rows, "by --finish" * (ended < of_study.design.runs), quiet)
         from . import answers  # after the study is known to be right: it takes longer to load
         try:
             with runs.stoppable():
@@ -189,17 +198,23 @@ def study(source, options, beside):
         return finish(of_study, out, rows, why, quiet)
 
 
+def ended_rows(of_study, out):
+    """The lines of results of the runs that have ended, in the order of runs."""
+    return [row for run, row in sorted(runs.read_rows(out).items()) if run < of_study.design.runs or of_study.design.directions]
+
+
 def finish_early(of_study, out, why, quiet):
     """Tables and answers of the runs that have ended in a study that was stopped, or lacks runs; says how many. Without bands of
     histories and pictures, so that a report waits until the study has ended."""
-    rows = [row for run, row in sorted(runs.read_rows(out).items()) if run < of_study.design.runs or of_study.design.directions]
+    rows = ended_rows(of_study, out)
     count = sum(row["run"] >= 0 for row in rows)
     if not count:
         return "no run has ended"
     (out / "pictures.json").unlink(missing_ok=True)  # of fewer runs, from an earlier call: a report would mix the two
     write_answers(of_study, out, rows, why, quiet, False)
     of = "" if of_study.design.directions else f" of {of_study.design.runs}"
-    return f"{count}{of} runs have ended; their results are in {out / 'runs.csv'}, the answers of these runs in {out / 'summary.txt'}"
+    return f"{count}{of} runs have ended; their results are in {out / 'runs.csv'}, the answers of these runs in {out / 'summary.txt'}\n" \
+        "to end the study with these runs, with pictures and for a report: the same command with --finish"
 
 
 def write_answers(of_study, out, rows, why, quiet, with_histories):
@@ -243,7 +258,7 @@ def fit(source, options, beside):
 
 SUBCOMMANDS = {
     "run": Subcommand(run, {"--realization": "realization", "--window": "window", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
-    "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
+    "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--finish": "finish", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
     "report": Subcommand(report, {"--pairs": "pairs", "--window": "window"}, writes_text=True),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),
 }

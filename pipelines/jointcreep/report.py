@@ -414,7 +414,8 @@ def write(source, output, programs, pairs=None, window=None):
     if is_study and window:
         raise NotWanted("--window is for result files; a study's report has no pictures of states")
     if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
-        raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}")
+        raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}; "
+                        "with --finish it ends with the runs that it has")
     if not is_study:
         with open(source, "rb"):
             pass

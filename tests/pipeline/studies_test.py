@@ -296,9 +296,36 @@ class Runs(Studies):
             refused = subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"],
                                      capture_output=True, text=True)
             self.assertEqual(refused.returncode, 2)
+            self.assertIn("--finish", refused.stderr)
+            self.check_finished(command, out, rows, summary)
             (programs / "go").touch()
             subprocess.run(command, check=True, timeout=LONGEST_RUN, stdout=subprocess.DEVNULL)
             self.assert_same(self.folder / "whole", out)
+
+    def check_finished(self, command, out, rows, summary):
+        """--finish makes no run, keeps the tables, and makes pictures for a report."""
+        done = subprocess.run([*command, "--finish"], check=True, timeout=LONGEST_RUN, capture_output=True, text=True)
+        self.assertEqual((done.stdout, done.stderr), (summary.replace("ended by a signal", "ended by --finish"), ""))
+        with open(out / "runs.csv", encoding="utf-8") as file:
+            self.assertEqual(list(csv.reader(file)), rows)
+        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertIn(f"warning: the answers are of {len(rows) - 1} of 12 runs", (self.folder / "r.html").read_text())
+
+    def test_finish_of_nothing(self):
+        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+        done = self.study(study, out, "--finish")
+        self.assertEqual((done.returncode, out.exists()), (2, False), done.stderr)
+        self.assertIn(f"--finish: {out} is not the folder of a study", done.stderr)
+        self.made(study, out)
+        summary = (out / "summary.txt").read_text()
+        self.assertNotIn("--finish", summary)
+        self.made(study, out, "--finish")  # of all runs: the study has ended as it does without
+        self.assertEqual((out / "summary.txt").read_text(), summary)
+        shutil.rmtree(out / "groups")
+        (out / "groups").mkdir()
+        done = self.study(study, out, "--finish")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(f"--finish: no run has ended in {out}", done.stderr)
 
     def test_a_cut_off_line(self):
         """What a full disk leaves of a line of results is made again."""
