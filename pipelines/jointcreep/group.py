@@ -33,6 +33,7 @@ SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  
 UP_TO_THERE = "the run up to there is "  # where demsolve has left a file, which goes with the others of the run
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
+BEGUN = ".begun"  # ending of a file beside the folder of a run, which is as old as the run, also if the run is made twice
 SAID = "said.txt"  # in the folder of a run: what the program that works there has written to stderr
 # Progress of demsolve there, which is no message: "run 4, strengths / 1.5: fails; ...", "33%, 8 s left: ...", "strengths / 1.5 (...".
 PROGRESS = re.compile(r"demsolve: (run \d+, strengths |strengths [/x] |\d+%(, \d+ (s|min|h) left)?: )")
@@ -140,6 +141,7 @@ def keep_files(study, run, folder):
 def result_of(study, scene, text, run, programs, folder):
     """The line of results of a run, made once more if it fails; but not if it finds no equilibrium and that is asked for."""
     begin = time.monotonic()
+    folder.with_suffix(BEGUN).touch()
     answer = quantities.NO_EQUILIBRIUM if any(one.what == "failed" for one in study.quantities) else 0
     for attempt in (1, 2):
         try:
@@ -223,6 +225,7 @@ def make_group(number, out, programs):
             if run["run"] not in done:
                 code = max(code, guarded(lambda run=run: make(run)))
         shutil.rmtree(folder, ignore_errors=True)
+        folder.with_suffix(BEGUN).unlink(missing_ok=True)
         if code == 0:
             os.fsync(file.fileno())
             os.replace(part, rows)

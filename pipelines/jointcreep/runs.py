@@ -13,11 +13,12 @@ import pathlib
 import re
 import shutil
 import signal
-import statistics
 import subprocess
 import sys
 import textwrap
 import time
+
+import numpy as np
 
 from . import files, group, plan, study_file
 from .errors import NotDone, NotWanted
@@ -147,7 +148,7 @@ class Ended:
         self.folder, self.read_to, self.seconds, self.complete = out / "groups", {}, {}, set()
 
     def look(self, names):
-        """[(seconds, exit code)] of the runs that have ended."""
+        """Seconds of the runs that have ended."""
         for name in names:
             if name in self.complete:
                 continue
@@ -158,7 +159,7 @@ class Ended:
                     whole = new[:new.rfind(b"\n") + 1]
                     for row in (plan.parsed(line, path) for line in whole.splitlines()):
                         if "seconds" in row:
-                            self.seconds[row["run"]] = row["seconds"], row["exit_code"]
+                            self.seconds[row["run"]] = row["seconds"]
                     self.read_to[name] = self.read_to.get(name, 0) + len(whole)
                     if path.suffix == ".rows":
                         self.complete.add(name)
@@ -169,25 +170,24 @@ class Ended:
 @dataclasses.dataclass
 class Present:
     """The runs that are made at present."""
-    count: int = 0
-    longest: float = 0.0  # time of the one that was begun first [s]
+    ages: list = dataclasses.field(default_factory=list)  # time so far of each [s], the longest first
     bracket: str = ""  # what its search knows of the factor of safety; "" without one
 
     def __str__(self):
         """ "; 2 runs at present, the longest for 35 min, factor of safety at least 1, below 1.5"; "" where no run takes long."""
-        if self.longest < LONG:
+        if not self.ages or self.ages[0] < LONG:
             return ""
-        runs = "1 run at present, for" if self.count == 1 else f"{self.count} runs at present, the longest for"
-        return f"; {runs} {duration(self.longest)}" + f", factor of safety {self.bracket}" * bool(self.bracket)
+        runs = "1 run at present, for" if len(self.ages) == 1 else f"{len(self.ages)} runs at present, the longest for"
+        return f"; {runs} {duration(self.ages[0])}" + f", factor of safety {self.bracket}" * bool(self.bracket)
 
 
 def present_runs(out, since):
     """The Present of a study's folder: runs that were begun after `since` [s, as time.time()]; folders of earlier ones were left by a study
     that was killed."""
     begun = []
-    for scene in (out / "work").glob("*/scene.toml"):  # the first file of a run
+    for path in (out / "work").glob(f"*{group.BEGUN}"):
         with contextlib.suppress(OSError):
-            begun.append((scene.stat().st_mtime, scene.with_name(group.SAID)))
+            begun.append((path.stat().st_mtime, path.with_suffix("") / group.SAID))
     begun = sorted(one for one in begun if one[0] >= since)
     if not begun:
         return Present()
@@ -195,33 +195,36 @@ def present_runs(out, since):
     with contextlib.suppress(OSError):
         said = begun[0][1].read_text("utf-8", errors="replace")
     found = re.findall(r"^demsolve: run \d+, strengths .*?; factor of safety ([^;\n]+)", said, re.MULTILINE)
-    return Present(len(begun), time.time() - begun[0][0], found[-1] if found else "")
+    return Present([time.time() - one for one, _ in begun], found[-1] if found else "")
 
 
 class Progress:
-    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. The time left is by the median
-    of the runs that ended with a result, and by how many are made at once: one that fails soon is no sign that others are as fast. Where
-    times of runs are not known, it is by the pace of the last half of what has ended."""
+    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. A run at present takes as long as
+    the mean of the ended runs that took longer than it has so far, or twice its time so far if none did. Runs that are not begun yet take the
+    mean of all these. Where times of runs are not known, the time left is by the pace of the last half of what has ended."""
 
     def __init__(self, total, what, quiet, at_once=1):
         self.total, self.what, self.quiet, self.at_once = total, what, quiet, at_once
         self.ended, self.told = [], 0  # time and number of runs, at each change
-        self.seconds = []  # of each run that has ended, and its exit code
+        self.seconds, self.present = [], Present()  # of each run that has ended; runs at present
         self.spoke = time.monotonic()
 
     def seconds_left(self):
         """None as long as no run has ended."""
-        (_, first), (now, done) = self.ended[0], self.ended[-1]
-        if self.seconds and done < self.total:
-            each = statistics.median([took for took, code in self.seconds if code == 0] or [took for took, _ in self.seconds])
-            left = self.total - done
-            return max(0.0, each * max(1.0, left / self.at_once) - min(each, time.monotonic() - now))
+        (_, first), (_, done) = self.ended[0], self.ended[-1]
+        left = self.total - done
+        if len(self.seconds) and left > 0:
+            took, ages = np.array(self.seconds), np.array(self.present.ages[:left])
+            longer = [took[took > age] for age in ages]
+            whole = np.array([one.mean() if len(one) else 2 * age for one, age in zip(longer, ages)])
+            each, rest, waiting = np.append(took, whole).mean(), whole - ages, left - len(ages)
+            return max([*rest, *[each] * (waiting > 0), (rest.sum() + waiting * each) / self.at_once])
         since, before = [one for one in self.ended if one[1] <= (first + done) / 2][-1]
-        return (now - since) / (done - before) * (self.total - done) if done > first else None
+        return (time.monotonic() - since) / (done - before) * left if done > first else None
 
-    def tell(self, done, seconds=(), present=""):
-        """done: how many have ended; seconds: as Ended.look() has them; present: what is said of the Present."""
-        self.seconds = seconds
+    def tell(self, done, seconds=(), present=Present()):
+        """done: how many have ended; seconds: as Ended.look() has them; present: the runs that are made."""
+        self.seconds, self.present = seconds, present
         if not self.ended:
             self.told = done
         if not self.ended or done != self.ended[-1][1]:

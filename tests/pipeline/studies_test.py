@@ -575,29 +575,36 @@ class Failures(Studies):
         self.assertIn("<li>warning in 2 of 2 runs: jointgen: 7 percent are gone</li>", (self.folder / "r.html").read_text())
 
     def test_time_left(self):
-        """By the median of the runs with a result, and how many are made at once; failed runs are no fast ones."""
+        """By the mean of all runs that have ended, failed ones too, and how many are made at once. A run at present that takes longer than
+        they did counts by its time so far."""
         now = [0.0]
         with unittest.mock.patch.object(runs.time, "monotonic", lambda: now[0]):
             progress = runs.Progress(100, "runs", True, 4)
             progress.tell(0)
             self.assertIsNone(progress.seconds_left())
-            ended = [(20.0, 0)] * 11 + [(40.0, 0)] * 5 + [(0.1, 3)] * 24
+            ended = [20.0] * 11 + [40.0] * 5 + [1.0] * 24
+            mean = np.mean(ended)
             progress.tell(40, ended)
-            self.assertAlmostEqual(progress.seconds_left(), 60 / 4 * 20)
-            now[0] = 5.0  # nothing has ended since
-            progress.tell(40, ended)
-            self.assertAlmostEqual(progress.seconds_left(), 60 / 4 * 20 - 5)
+            self.assertAlmostEqual(progress.seconds_left(), 60 / 4 * mean)
             progress.tell(99, ended)  # one is not made in a quarter of its time
-            self.assertAlmostEqual(progress.seconds_left(), 20)
-            progress = runs.Progress(4, "runs", True)  # all have failed so far
-            progress.tell(2, [(3.0, 3), (5.0, 3)])
-            self.assertAlmostEqual(progress.seconds_left(), 8)
+            self.assertAlmostEqual(progress.seconds_left(), mean)
+            progress.tell(40, ended, runs.Present([30.0, 10.0]))  # they take 40 s, and the mean of 20 s and 40 s
+            whole = [40.0, (20 * 11 + 40 * 5) / 16]
+            self.assertAlmostEqual(progress.seconds_left(), (sum(whole) - 40 + 58 * np.mean([*ended, *whole])) / 4)
+            progress.tell(98, ended, runs.Present([600.0, 300.0]))  # both take longer than any that has ended
+            self.assertAlmostEqual(progress.seconds_left(), 600)
+            progress.tell(98, [*ended, 900.0], runs.Present([600.0, 300.0]))
+            self.assertAlmostEqual(progress.seconds_left(), 600)
+            progress.tell(99, [*ended, 900.0], runs.Present([600.0]))
+            self.assertAlmostEqual(progress.seconds_left(), 300)
             progress = runs.Progress(100, "replicates", True)  # by the pace of the last half
             progress.tell(0)
             for done in range(1, 41):
                 now[0] += 20 if done <= 10 else 1
                 progress.tell(done)
             self.assertAlmostEqual(progress.seconds_left(), 60)
+            now[0] += 20  # nothing has ended since
+            self.assertAlmostEqual(progress.seconds_left(), 120)
 
     def test_runs_at_present(self):
         """How many there are, since when the longest is made, and what its search knows; runs of a killed study do not count."""
@@ -607,8 +614,8 @@ class Failures(Studies):
         for name, age in (("000000", 9000), ("000001", 2100), ("000002", 20)):
             folder = out / "work" / name
             folder.mkdir(parents=True)
-            (folder / "scene.toml").touch()
-            os.utime(folder / "scene.toml", (now - age, now - age))
+            folder.with_suffix(".begun").touch()
+            os.utime(folder.with_suffix(".begun"), (now - age, now - age))
         self.assertEqual(str(runs.present_runs(out, now - 5000)), "; 2 runs at present, the longest for 35 min")
         said = ["demsolve: run 1, strengths x 64: stable, for comparison", "demsolve: run 2, strengths / 1: stable; factor of safety at least 1"]
         for lines, words in ((said[:1], ""), (said, ", factor of safety at least 1"), ([*said, "demsolve: 33%, 8 s left: strengths / 2 (factor "
@@ -635,6 +642,25 @@ class Failures(Studies):
         self.assertRegex(told.getvalue(), r"0 of 2 runs; 2 runs at present, the longest for \d s, factor of safety at least 1\n")
         self.assertEqual(rows[0]["reason"], "demsolve: on purpose")
 
+    def test_a_run_that_is_repeated_is_one_run(self):
+        """Its time at present is since its first try, as its seconds in the end."""
+        case = 'case "$PWD" in *work/000000*) sleep 1.5; exit 5 ;; esac'
+        told, longest, present_runs = io.StringIO(), [], runs.present_runs
+
+        def noted(out, since):
+            found = present_runs(out, since)
+            longest.append(max(found.ages, default=0))
+            return found
+        study, out = study_file.read(self.written(NETWORKS.format(runs=2))), self.folder / "out"
+        programs = self.programs(case)
+        with unittest.mock.patch.object(runs, "present_runs", noted), unittest.mock.patch.object(runs, "LOOKS", 0.1), \
+                contextlib.redirect_stderr(told), runs.locked(out) as lock:
+            plan.make(study, out, programs)
+            rows, _ = runs.make(study, out, programs, 1, None, False, None, lock)
+        self.assertEqual(rows[0]["attempts"], 2)
+        self.assertGreater(max(longest), 2.5)
+        self.assertFalse(list((out / "work").iterdir()))
+
     def test_times_of_runs(self):
         """They are read as they come, each once, also where the file of a group gets its final name."""
         out = self.chain.new_folder()
@@ -643,10 +669,10 @@ class Failures(Studies):
         ended = runs.Ended(out)
         self.assertEqual(ended.look(["000000", "000001"]), [])
         part.write_text(line.format(0) + line.format(1)[:9])
-        self.assertEqual(ended.look(["000000", "000001"]), [(0.5, 0)])
+        self.assertEqual(ended.look(["000000", "000001"]), [0.5])
         part.write_text(line.format(0) + line.format(1))
         part.rename(out / "groups" / "000000.rows")
-        self.assertEqual(ended.look(["000000", "000001"]), [(0.5, 0), (1.5, 0)])
+        self.assertEqual(ended.look(["000000", "000001"]), [0.5, 1.5])
 
     def test_a_failed_search(self):
         """Its message is in the table, and the state of its failed run can be kept."""
