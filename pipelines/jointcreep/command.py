@@ -28,7 +28,7 @@ Options:
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
-  --window WINDOW           run, report: x0,y0,x1,y1, the part of the section in pictures of states and section-detail.png, in metres
+  --window WINDOW           run, report: x0,y0,x1,y1 or four words, the part of the section in pictures of states and section-detail.png, in metres
                             fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
   --layer NAME              fit: layer of the file
   --property NAME           fit: a set for each value of this property, in CSV a column
@@ -113,6 +113,8 @@ def options_of(arguments):
                 found[option] = True
             elif equals or rest:
                 found[option] = value if equals else rest.pop(0)
+                if option == "window" and all(map(is_number, [found[option], *rest[:3]])):  # four words, as plots have it
+                    found[option], rest = ",".join([found[option], *rest[:3]]), rest[3:]
             else:
                 raise NotWanted(f"{word} has no value")
         elif word.startswith("-") or source is not None:
@@ -128,6 +130,13 @@ def options_of(arguments):
     if not jobs.isdecimal() or not 1 <= int(jobs) <= 10000:
         raise NotWanted(f'--jobs is "{jobs}"; expected a whole number from 1 to 10000')
     return SUBCOMMANDS[name], pathlib.Path(source), {**found, "jobs": int(jobs)}
+
+
+def is_number(word):
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
 
 
 def usage():
@@ -151,12 +160,10 @@ def window_of(options):
     text = options.get("window")
     if text is None:
         return None
-    try:
-        window = [float(word) for word in text.split(",")]
-    except ValueError:
-        window = []
-    if len(window) != 4 or not all(map(math.isfinite, window)) or window[0] >= window[2] or window[1] >= window[3]:
-        raise NotWanted(f'--window is "{text}"; expected x0,y0,x1,y1 in metres, with x0 below x1 and y0 below y1')
+    words = text.split(",")
+    window = [float(word) for word in words] if all(map(is_number, words)) else []
+    if len(window) != 4 or window[0] >= window[2] or window[1] >= window[3]:
+        raise NotWanted(f'--window is "{text}"; expected x0,y0,x1,y1 in metres (or four words), with x0 below x1 and y0 below y1')
     return window
 
 

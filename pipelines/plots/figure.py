@@ -91,7 +91,18 @@ def arguments_of(description, *options):
     parser.add_argument("-o", "--output", metavar="NAME.png", required=True, help="or .pdf, .svg")
     for names, keywords in options:
         parser.add_argument(*names, **keywords)
-    return parser.parse_args()
+    return parser.parse_args(window_as_words(sys.argv[1:]))
+
+
+def window_as_words(arguments):
+    """Arguments with --window X0,Y0,X1,Y1, as jointcreep has it, as four words."""
+    words = []
+    for word in arguments:
+        if word.startswith("--window="):
+            words += ["--window", *word.removeprefix("--window=").split(",")]
+        else:
+            words += word.split(",") if words[-1:] == ["--window"] else [word]
+    return words
 
 
 @contextlib.contextmanager
@@ -260,7 +271,7 @@ def name_index(names, wanted, what):
 
 
 WINDOW = (["--window"], {"nargs": 4, "type": float, "metavar": ("X0", "Y0", "X1", "Y1"),
-                         "help": "part of the section to draw, in m; default: all of it"})
+                         "help": "part of the section to draw, in m, as four words or with commas; default: all of it"})
 
 
 def section_axes(outline, window=None):

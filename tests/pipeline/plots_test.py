@@ -139,6 +139,7 @@ class Plots(ChainTest):
         folder = result.parent
         for name, words, options in [
             ("state", ["--field", "stress", "--window", "5", "5", "25", "15"], {"field": "stress", "window": (5, 5, 25, 15)}),
+            ("section", ["--window", "-5,-5,25,15"], {"window": (-5, -5, 25, 15)}), ("blocks", ["--window=5,5,25,15"], {"window": (5, 5, 25, 15)}),
             ("histories", ["--component", "x", "--point", "floor"], {"component": "x", "point": ["floor"]}),
             ("blocks", ["--by", "set"], {"by": "set"}), ("section", [], {}), ("rose", ["--width", "20"], {"width": 20})]:
             with self.subTest(name):

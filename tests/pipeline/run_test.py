@@ -271,6 +271,7 @@ class Run(ChainTest):
         self.assertIn(base64.b64encode((self.out / "section-detail.png").read_bytes()).decode(), report)
         self.assertIn(base64.b64encode((self.out / "last-stress.png").read_bytes()).decode(), report)
         self.assertEqual(self.made("--window=5,2.5,25,15", "--", "--no-creep"), set())
+        self.assertEqual(self.made("--window", "5", "2.5", "25", "15", "--", "--no-creep"), set())
         drawn_in_it = {"section-detail.png", "last-displacement.png", "last-stress.png", "last-contacts.png", "report.html"}
         self.assertEqual(self.made("--window", "-5,-5,25,15", "--", "--no-creep"), drawn_in_it)
         self.assertEqual(self.made("--", "--no-creep"), drawn_in_it - {"section-detail.png"})
@@ -439,8 +440,9 @@ class Run(ChainTest):
             (["scene.toml", "-o", "out", "--", "--checkpoint", "x.h5"], 2, '"--checkpoint" after --'),
             (["scene.toml", "-o", "out", "--programs", "other"], 2, "jointgen: is not there"),
             (["scene.toml", "-o", "mine", "--makefile"], 2, "Makefile: is not of jointcreep run"),
-            (["scene.toml", "-o", "out", "--window", "1,2,3"], 2, '--window is "1,2,3"; expected x0,y0,x1,y1 in metres'),
-            (["scene.toml", "-o", "out", "--window", "9,2,3,4"], 2, '--window is "9,2,3,4"; expected x0,y0,x1,y1 in metres, with x0 below'),
+            (["scene.toml", "-o", "out", "--window", "1,2,3"], 2, '--window is "1,2,3"; expected x0,y0,x1,y1 in metres (or four words)'),
+            (["scene.toml", "-o", "out", "--window", "1", "2", "3"], 2, '--window is "1,2,3"; expected x0,y0,x1,y1 in metres'),
+            (["scene.toml", "-o", "out", "--window", "9,2,3,4"], 2, '--window is "9,2,3,4"; expected x0,y0,x1,y1 in metres (or four words), with x0 below'),
             (["scene.toml", "-o", "new", "--makefile", "--", "--until", "1\n2"], 2, "no line breaks"),
         ]:
             with self.subTest(arguments):
