@@ -28,6 +28,7 @@ pre { background: #f4f5f8; padding: .8em; overflow-x: auto; font-size: 85%; whit
 .bad { color: #b5403a; font-weight: bold; }
 @media print { body { max-width: none; } figure, tr { break-inside: avoid; } }
 """
+MOST_LISTED = 12  # numbers of a list of a study file
 MOST_ROWS = 50  # of a table of runs that have no value
 MOST_BLOCKS = 10  # of the table of moving blocks
 MOST_PAIRS = 15  # of points, in the table of relative displacements
@@ -338,6 +339,19 @@ def histories_of(out):
     return ["<h2>Histories</h2>", *drawn_ones] if drawn_ones else []
 
 
+def study_text(text):
+    """Parts of the page: the text of a study file, with long lists of numbers in short."""
+    def in_short(found):
+        try:
+            numbers = [float(one) for one in re.sub(r"#.*", "", found[1]).split(",") if one.strip()]
+        except ValueError:
+            return found[0]
+        return f"[{len(numbers)} values, {min(numbers):g} to {max(numbers):g}]" if len(numbers) > MOST_LISTED else found[0]
+    short = re.sub(r"\[([^][]*)\]", in_short, text)
+    note = ["<p>Long lists of numbers are in short; study.toml in the study's folder has them in full.</p>"] * (short != text)
+    return [*note, f"<pre>{escaped(short)}</pre>"]
+
+
 def what_varies(study, scene):
     """Parts of the page: what the study changes from run to run."""
     parts = ["<h2>What varies</h2>"] + ["<p>The network.</p>"] * study.varies_network
@@ -399,7 +413,7 @@ def of_study(out, programs, folder):
     parts += ["<h2>Settings</h2>", settings(marked), "<h2>Versions</h2>",
               table(["program", "version"], found["identity"]["the programs' versions"].items()),
               *materials_of(marked, " Values with <i>varies by</i> change from run to run: these are the values in the runs, not that of the scene."),
-              "<h2>Study file</h2>", f"<pre>{escaped((out / 'study.toml').read_text('utf-8'))}</pre>",
+              "<h2>Study file</h2>", *study_text((out / "study.toml").read_text("utf-8")),
               "<h2>Scene</h2>", "<p>As it is written, before the study changes values (section What varies).</p>" * bool(study.parameters),
               f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
     return study.title or f"Study of {scene.get('title', out.name)}", parts

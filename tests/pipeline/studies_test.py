@@ -30,7 +30,7 @@ import numpy as np
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
 import jointcreep
-from jointcreep import answers, failure, intervals, materials, plan, plots, runs, scene_keys, study_file
+from jointcreep import answers, failure, intervals, materials, plan, plots, report, runs, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
 
@@ -1300,6 +1300,16 @@ class Reports(Studies):
         self.assertIn("change from run to run", part)
         self.assertIn('<td>zones</td><td>size_m</td><td>varies by "zones.size_m": 4 to 5</td>', html.unescape(page))
         self.assertIn('<td>spacing</td><td>joint_set.steep.spacing.mean_m</td><td class="number">6</td><td>5 to 7</td>', page)
+
+    def test_long_lists(self):
+        """Of numbers, in the study file of a report."""
+        numbers = [str(1 + 0.01 * ((7 * n) % 100)) for n in range(100)]
+        long = "values = [" + ", ".join(numbers[:40]) + ",  # and, so on\n" + ",\n  ".join(numbers[40:]) + ",\n]\n"
+        for text, shown in ((long, "values = [100 values, 1 to 1.99]\n"), ("values = [1, 2, 3]\n[design]\n", None),
+                            ('keep = ["result.h5"]\nvalues = [' + '"a", ' * 20 + "]\n", None)):
+            parts = report.study_text("[[vary]]\n" + text)
+            self.assertEqual(html.unescape(parts[-1]), f"<pre>[[vary]]\n{shown or text}</pre>")
+            self.assertEqual(len(parts), 2 if shown else 1)
 
     def test_values_in_runs(self):
         study = NETWORKS.format(runs=2) + "[[vary]]\nkey = 'a'\n"
