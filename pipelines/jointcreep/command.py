@@ -210,6 +210,15 @@ def ended_rows(of_study, out):
     return [row for run, row in sorted(runs.read_rows(out).items()) if run < of_study.design.runs or of_study.design.directions]
 
 
+def remove_pictures(out):
+    """Removes pictures and bands of histories, which are of fewer runs, from an earlier call: a reader would mix the two."""
+    path, names = out / "pictures.json", ["ensemble.h5", "ensemble.csv", "ensemble.png", "ensemble-y.png"]
+    if path.exists():
+        names += [name for of_quantity in plan.parsed(path.read_bytes(), path).values() for name in of_quantity]
+    for name in ["pictures.json", *names]:
+        (out / name).unlink(missing_ok=True)
+
+
 def finish_early(of_study, out, why, quiet):
     """Tables and answers of the runs that have ended in a study that was stopped, or lacks runs; says how many. Without bands of
     histories and pictures, so that a report waits until the study has ended."""
@@ -217,7 +226,7 @@ def finish_early(of_study, out, why, quiet):
     count = sum(row["run"] >= 0 for row in rows)
     if not count:
         return "no run has ended"
-    (out / "pictures.json").unlink(missing_ok=True)  # of fewer runs, from an earlier call: a report would mix the two
+    remove_pictures(out)
     write_answers(of_study, out, rows, why, quiet, False)
     of = "" if of_study.design.directions else f" of {of_study.design.runs}"
     return f"{count}{of} runs have ended; their results are in {out / 'runs.csv'}, the answers of these runs in {out / 'summary.txt'}\n" \

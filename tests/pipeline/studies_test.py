@@ -311,6 +311,30 @@ class Runs(Studies):
         subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
         self.assertIn(f"warning: the answers are of {len(rows) - 1} of 12 runs", (self.folder / "r.html").read_text())
 
+    def test_stopped_with_more_runs(self):
+        """Pictures and bands of the runs of an earlier call go, as the tables are of more runs; --finish makes them again."""
+        text = "histories = true\n" + NETWORKS.split("[[collect]]\nname")[0]
+        out = self.made(self.written(text.format(runs=3)), self.folder / "out")
+        names = {path.name for path in out.iterdir()}
+        old = {name for name in names if name.endswith(".png") or name.startswith("ensemble")} | {"pictures.json"}
+        self.assertGreater(len(old), 5)
+        programs = self.programs('case "$PWD" in *work/00000[45]*) exec sleep 60 ;; esac')
+        study = self.written(text.format(runs=6))
+        running = subprocess.Popen([*map(str, self.command(study, out, programs=programs))], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        end = time.monotonic() + LONGEST_RUN
+        while not (out / "groups" / "000003.rows").exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        running.send_signal(signal.SIGINT)
+        running.communicate(timeout=LONGEST_RUN)
+        self.assertEqual(running.returncode, 130)
+        self.assertIn("runs                 4 of 6, ended by a signal\n", (out / "summary.txt").read_text())
+        self.assertEqual(names - {path.name for path in out.iterdir()}, old)
+        self.made(study, out, "--finish")
+        self.assertLessEqual(old, {path.name for path in out.iterdir()})
+        self.assertIn("runs                 4 of 6, ended by --finish\n", (out / "summary.txt").read_text())
+        self.assertIn(",4,", (out / "ensemble.csv").read_text().splitlines()[1])
+
     def test_finish_of_nothing(self):
         study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
         done = self.study(study, out, "--finish")
