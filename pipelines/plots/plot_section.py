@@ -13,6 +13,7 @@ import figure
 STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
 SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1)]  # of a place, where its name can be
 AWAY = 11  # a name that has no room beside its place is this much farther off, or a multiple [pt]
+CROSSING, FARTHEST = 30, 60  # of lines to numbers of stages; the farthest is of many stages [pt]
 AROUND = (0, 6, 12, 20, 30, 42, 56)  # distances of a name from its place, the nearest first [pt]
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
 TICKS = 3  # ticks on a monitoring line are not closer than this [pt]
@@ -64,9 +65,9 @@ def draw_joints(file, axes, inside):
     return entries
 
 
-def draw_number(number, corners, stages, axes, taken, fonts):
+def draw_number(number, corners, stages, axes, taken, fonts, farthest):
     """Writes a stage's number inside of its polygon, as near to the middle as nothing is written yet, in the first of these fonts that fits;
-    else outside of all stages, with a line to it. stages: polygons of all; taken as in free_box()."""
+    else outside of all stages, as write_outside() does. stages: polygons of all; taken as in free_box(). Returns whether it is there."""
     look = {"ha": "center", "va": "center", "zorder": 4, "bbox": {"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5}}
     for font in fonts:
         radius = font - 0.5
@@ -75,8 +76,8 @@ def draw_number(number, corners, stages, axes, taken, fonts):
             if is_free(box, taken):
                 taken.append(box)
                 axes.annotate(str(number), place, fontsize=font, **look)
-                return
-    write_outside(str(number), corners, stages, axes, np.full(2, 2 * radius), taken, fontsize=font, **look)
+                return True
+    return write_outside(str(number), corners, stages, axes, np.full(2, 2 * radius), taken, farthest, fontsize=font, **look)
 
 
 def inside_of(corners, radius, axes):
@@ -91,28 +92,35 @@ def inside_of(corners, radius, axes):
     return grid[np.all([polygon.contains_points(end) for end in ends], axis=0)]
 
 
-def write_outside(text, corners, stages, axes, size, taken, **look):
-    """Text with a line to a stage, where its box of this size [pt] overlaps no stage and none of `taken`, to which it is added. The line
-    crosses no other stage, if that is possible. Where stages fill the picture, the text is in its own."""
+def write_outside(text, corners, stages, axes, size, taken, farthest, **look):
+    """Text with a line to a stage, where its box of this size overlaps no stage and none of `taken`, to which box and line are added. It is
+    near, but the line rather goes CROSSING farther than across another stage, or something written. Nothing is written where this sum is
+    more than `farthest`. All in pt. Where stages fill the picture, the text is in its own. Returns whether it is written."""
     paths = [matplotlib.path.Path(points_of(stage, axes)) for stage in stages]
     place = [*inside_of(corners, 2, axes), *inside_of(corners, 0, axes), corners.mean(axis=0)][0]
-    middle, best = points_of(place, axes), (np.inf, None)
-    for away in (*AROUND, *range(70, 800, 15)):
+    middle, best = points_of(place, axes), (farthest, None)
+    for away in range(0, 800, 6):
+        if away >= best[0]:
+            break
         for box in boxes_around(middle, size, away, axes):
             if is_free(box, taken) and not any(path.intersects_bbox(matplotlib.transforms.Bbox(box)) for path in paths):
                 line = matplotlib.path.Path([middle, np.mean(box, axis=0)])
-                best = min(best, (sum(path.intersects_path(line) for path in paths), box), key=lambda one: one[0])
-        if best[0] <= 1:  # its own
-            break
+                crossed = sum(path.intersects_path(line) for path in paths) - 1  # without its own
+                crossed += sum(line.intersects_bbox(matplotlib.transforms.Bbox(other), filled=False) for other in taken)
+                best = min(best, (away + CROSSING * crossed, box), key=lambda one: one[0])
+    if best[1] is None and farthest < np.inf:
+        return False
     box = (middle - size / 2, middle + size / 2) if best[1] is None else best[1]
-    taken.append(box)
+    along = np.mean(box, axis=0) - middle
+    taken += [box, *((at - 1, at + 1) for at in middle + np.linspace(0, 1, 2 + int(np.linalg.norm(along) / 3))[:, None] * along)]
     write(text, place, axes, box, best[1] is not None, **look)
+    return True
 
 
 def draw_stages(scene, axes, inside, taken, crowded=False):
     """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box(); crowded:
     small numbers."""
-    entries = []
+    entries, all_there = [], True
     stages = scene.get("stage", [])
     few = len(stages) <= FEW
     fonts = [8, 5.5] if few and not crowded else [5.5]
@@ -128,14 +136,15 @@ def draw_stages(scene, axes, inside, taken, crowded=False):
             if len(seen) == 0:
                 continue
             shown = True
-            draw_number(number, seen, of_all, axes, taken, fonts)
+            all_there &= draw_number(number, seen, of_all, axes, taken, fonts, np.inf if few else FARTHEST)
         if not shown:
             continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
                                                markeredgewidth=0, markersize=5, label=f"{stage['name']}, {when}"))
     if not few:
-        return [matplotlib.patches.Patch(facecolor="none", **STAGE_BORDER, label="stages, numbered as they follow")]
+        label = "stages, numbered as they follow" if all_there else "stages, some with their numbers"
+        return [matplotlib.patches.Patch(facecolor="none", **STAGE_BORDER, label=label)]
     return entries
 
 

@@ -652,6 +652,27 @@ class Plots(ChainTest):
                         ends = figure.matplotlib.path.Path(stages[int(text.get_text()) - 1]["remove_m"][0])
                         self.assertTrue(ends.contains_point(text.xy))
 
+    def test_numbers_of_many_small_stages(self):
+        """Where they have no room, some are left out, and the legend says it."""
+        import figure
+        import plot_section
+
+        stages = [{"name": f"lift {i}", "date": i, "remove_m": [[[-40, 4 * i], [40, 4 * i], [40, 4 * i + 4], [-40, 4 * i + 4]]]}
+                  for i in range(15)]
+        for half, label, least in (1000, "stages, some with their numbers", 2), (60, "stages, numbered as they follow", 15):
+            plot, axes = figure.section_axes(None, (-half, -half / 3, half, half / 3 + 60))
+            self.addCleanup(figure.plt.close, plot)
+            inside = axes.add_patch(figure.matplotlib.patches.Polygon([[-2e3, -2e3], [2e3, -2e3], [2e3, 2e3], [-2e3, 2e3]]))
+            entries = plot_section.draw_stages({"stage": stages}, axes, inside, [])
+            self.assertEqual([entry.get_label() for entry in entries], [label])
+            self.assertGreaterEqual(len(axes.texts), least)
+            plot.canvas.draw()
+            for text in axes.texts:
+                box = text.get_bbox_patch().get_window_extent()
+                for other in axes.texts:
+                    if text is not other:
+                        self.assertFalse(box.overlaps(other.get_bbox_patch().get_window_extent()))
+
 
 class Suited(ChainTest):
     def test_the_part_of_a_large_section_is_found_by_names_of_numbers(self):
