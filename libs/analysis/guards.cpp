@@ -107,8 +107,8 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
     return "";
 }
 
-// The sum of the energy balance of the implicit engine holds by definition: it has bounds in its place. That of a dynamic
-// analysis is checked over its whole length, by DynamicStage.
+// The sum of the energies holds by definition with the implicit engine: that none is created is checked in its place. The sum
+// of a dynamic analysis is checked over its whole length, by DynamicStage.
 void Guards::check_equilibrium()
 {
     mechanics::Convergence found = section_.settled.convergence;

@@ -89,12 +89,14 @@ struct Section {
     void say(const std::string& what, const std::string& more = "")
     {
         const bool is_in_situ = stage.empty() && now == 0 && !what.empty();
-        progress = {share_done(), what,
-                    more,         is_in_situ ? std::nullopt : std::optional(now),
-                    nullptr,      scene.equilibrium.tolerance};
+        progress = {.fraction = share_done(),
+                    .what = what,
+                    .more = more,
+                    .time = is_in_situ ? std::nullopt : std::optional(now),
+                    .tolerance = scene.equilibrium.tolerance};
         observe(progress);
     }
-    // Stages before now, and time. Stages are short and take long, creep the other way round.
+    // Mean of the shares of stages and of the scene's time. A stage takes no time of the scene, but much of the computation.
     double share_done() const
     {
         const double of_time = now / scene.end;

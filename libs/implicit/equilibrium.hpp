@@ -11,7 +11,7 @@
 // (implicit/flow.cpp).
 //
 // The energy balance is that of backward Euler, too: slip is at the final traction. Energy that is neither stored nor
-// dissipated counts as damped. So the sum holds by definition, and bounds are checked in its place; see created_energy.
+// dissipated counts as damped. So the sum holds by definition; created_energy is checked in its place.
 
 #pragma once
 

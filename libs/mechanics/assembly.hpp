@@ -190,8 +190,8 @@ struct Convergence {
     double remaining_displacement = 0; // largest, by estimate [m]
     // Energy balance: work of loads = stored in zones and contacts + dissipated by both + taken by damping [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
-    double created =
-        0; // by the implicit engine: energy that has no source [J/m]; see implicit::created_energy
+    // By the implicit engine: energy that has no source [J/m]; see implicit::created_energy.
+    double created = 0;
 };
 
 // Called now and then in a search for equilibrium, with the steps so far and the unbalanced force ratio.

@@ -4,8 +4,8 @@
 // A kind has, in its own folder, the functions that are called with it; rock/zones.hpp and joint/contacts.hpp say what
 // they do:
 //   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, reported_forces, add_row_sums, stiffening_of,
-//   are_beyond, stored_energy, returned_energy, begin_search, dissipated, yields, hold_yield, is_within_strength, is_finite, pass,
-//   state_of, go_back, start_from_here, transfer, record_state, join, remove_at.
+//   are_beyond, stored_energy, returned_energy, begin_search, dissipated, yields, hold_yield, is_within_strength,
+//   is_finite, pass, state_of, go_back, start_from_here, transfer, record_state, join, remove_at.
 // rock/zone_stiffness.hpp and joint/contact_stiffness.hpp have its Tangent, and
 //   present, coupled_by, add_stiffness, add_springs, without_zeros; with a constant stiffness constants and
 //   add_constant_stiffness, without one add_force_change.

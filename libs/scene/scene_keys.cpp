@@ -23,7 +23,7 @@ constexpr KeyUnit per_s{"1/s", 1 / unit::s};
 constexpr KeyUnit seconds{"s", unit::s};
 constexpr KeyUnit mm_per_day{"mm/day", unit::mm / unit::day};
 
-constexpr double usual_shortest_edge = 0.02; // of the smallest zone size
+constexpr double usual_shortest_edge = 0.02; // over size_at_faces_m of [zones], or over size_m without it [-]
 constexpr double usual_local_damping = 0.8;
 
 struct Schedule {
