@@ -105,12 +105,12 @@ def density(law, x):
 def jointed(file):
     """Which blocks are those between joints: not those that have parts of the border of a region of joint sets (region_m), which belong to
     the rock without joints around it; all, if the sets have no regions or nothing else is left."""
-    regions = {tuple(map(tuple, one["region_m"])) for one in figure.scene_of(file).get("joint_set", []) if "region_m" in one}
-    if not regions or any("region_m" not in one for one in figure.scene_of(file).get("joint_set", [])):
+    sets = figure.scene_of(file).get("joint_set", [])
+    if not sets or any("region_m" not in one for one in sets):
         return np.ones(len(figure.array(file, "/blocks/area")), bool)
     first, corner = figure.array(file, "/blocks/first_ring"), figure.array(file, "/rings/first_corner")
     position, vertex = figure.array(file, "/vertices/position"), figure.array(file, "/rings/vertex")
-    paths = [matplotlib.path.Path(corners) for corners in regions]
+    paths = [matplotlib.path.Path(corners) for corners in {tuple(map(tuple, one["region_m"])) for one in sets}]
     small = 1e-6 * np.max(np.ptp(position, axis=0))
     of_vertex = np.any([path.contains_points(position, radius=small) | path.contains_points(position, radius=-small) for path in paths], axis=0)
     inside = np.array([of_vertex[vertex[corner[begin]:corner[end]]].all() for begin, end in zip(first[:-1], first[1:])])

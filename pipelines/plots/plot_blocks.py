@@ -2,8 +2,9 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The smallest 1 percent of the area has the first colour of the scale, because slivers would take most of it. Rock without joints around the
-regions of joint sets (region_m) is grey. With a window the scale is for the blocks that are completely inside; larger blocks are grey.
+The colour scale leaves out the smallest blocks, which together have 1 percent of the area: they have its first colour. Rock
+outside of the regions of joint sets (region_m) is grey. With a window the scale is that of the blocks completely inside of it;
+larger blocks are grey.
 """
 
 import matplotlib.colors

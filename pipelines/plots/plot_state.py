@@ -415,7 +415,8 @@ def window_of_failure(file, section):
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
          limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some; limits: low, high of the colour scale."""
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some;
+    limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, state)
