@@ -8,7 +8,7 @@ In the order in which a study passes through them:
     scene_keys.py   finds and changes the keys of a scene
     plan.py         what a study's folder has before runs are made
     design.py       what each run is given: its network and its parameters
-    runs.py         makes all groups of runs, by GNU Make or Snakemake, and continues where it was interrupted
+    runs.py         makes all groups of runs, by processes or Snakemake, and continues where it was interrupted
     group.py        makes the runs of one group, one after another, and keeps a line of results for each
     quantities.py   reads what is collected from the files of a run
     histories.py    displacements of points at any time

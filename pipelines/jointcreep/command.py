@@ -22,7 +22,7 @@ Options:
   -o [ --output ] OUT       the folder of a run or study, or the report or sets to write; - is standard output
   -j [ --jobs ] N           study: runs at a time (default 1)
   --finish                  study: make no more runs; answers, pictures and report are of those that have ended
-  --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
+  --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml
   --realization R           run: which of the seed's networks (default 0)
   --pairs PAIRS             report: pairs of points for closures: "left wall,right wall; crown,floor" (default: all)
   --makefile                run: write OUT/Makefile with these commands, and make nothing else

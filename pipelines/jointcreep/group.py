@@ -1,4 +1,4 @@
-"""Makes the runs of one group, one after another:  python3 -m jointcreep.group NUMBER  in the folder of a study.
+"""Makes the runs of one group, one after another; of Snakemake's:  python3 -m jointcreep.group NUMBER  in the folder of a study.
 
 A run is the chain of programs with one network and one set of parameters. Its line of results is appended to
 groups/NUMBER.rows.part as soon as it has ended, and the file is called groups/NUMBER.rows once the group is complete. So a
@@ -26,7 +26,7 @@ import time
 
 from . import ensemble, plan, quantities, scene_keys, study_file
 from .chain import CANNOT_WRITE, FAILED_INSIDE, was_stopped, without
-from .errors import NotDone, NotWanted
+from .errors import NotDone, NotWanted, lacks_memory
 
 LONGEST_REASON = 2000  # characters
 SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  # of demsolve --factor-of-safety
@@ -35,8 +35,8 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
 BEGUN = ".begun"  # ending of a file beside the folder of a run, which is as old as the run, also if the run is made twice
 SAID = "said.txt"  # in the folder of a run: what the program that works there has written to stderr
-# Progress of demsolve there, which is no message: "run 4, strengths / 1.5: fails; ...", "33%, 8 s left: ...", "strengths / 1.5 (...".
-PROGRESS = re.compile(r"demsolve: (run \d+, strengths |strengths [/x] |\d+%(, \d+ (s|min|h) left)?: )")
+# Progress there, which is no message: "run 4, strengths / 1.5: fails; ...", "33%, 8 s left: ...", "strengths / 1.5 (...", "2000 joints with".
+PROGRESS = re.compile(r"demsolve: (run \d+, strengths |strengths [/x] |\d+%(, \d+ (s|min|h) left)?: )|jointgen: \d+ joints with about ")
 
 
 def die_with(parent):
@@ -232,19 +232,20 @@ def make_group(number, out, programs):
         return code
 
 
-def main():
-    out, programs = pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])
+def exit_code(number, out, programs):
+    """Makes a group, and says what went wrong. Returns the exit code of the process that does it."""
     try:
-        return make_group(sys.argv[1], out, programs)
+        return make_group(number, out, programs)
     except KeyboardInterrupt:  # said by the study
         return 128 + signal.SIGINT
     except (NotDone, NotWanted) as error:
         print(f"jointcreep: {error}", file=sys.stderr)
-        return CANNOT_WRITE
-    except OSError as error:
-        print(f"jointcreep: {out}: {error}", file=sys.stderr)
-        return CANNOT_WRITE
+    except Exception as error:
+        if not lacks_memory(error) and not isinstance(error, OSError):
+            raise
+        print("jointcreep: out of memory" if lacks_memory(error) else f"jointcreep: {out}: {error}", file=sys.stderr)
+    return CANNOT_WRITE
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(sys.argv[1], pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])))

@@ -1,4 +1,4 @@
-"""Makes the runs of a study, group by group, by GNU Make on this machine or by Snakemake wherever its profile says.
+"""Makes the runs of a study, group by group, by processes of this machine or by Snakemake wherever its profile says.
 
 The folder is locked while a study works there; the lock is held by all processes that work for it, so that it ends with the
 last of them. Whatever has ended stays, and the same command continues from there.
@@ -8,6 +8,7 @@ import contextlib
 import dataclasses
 import fcntl
 import itertools
+import multiprocessing.connection
 import os
 import pathlib
 import re
@@ -30,16 +31,6 @@ SILENT = 60  # s, after which there is one in any case
 LONG = 10  # s from which something is said of runs that have not ended
 CLOCKS = 1  # s by which the clocks of files and of this machine may differ
 TIMED_OUT = "timed out"
-
-MAKEFILE = """# The groups of runs of a study; jointcreep study calls it. Names nothing of the scene.
-.SUFFIXES:
-MAKEFLAGS += --no-builtin-rules
-.PHONY: all
-.PRECIOUS: groups/%.rows
-all: {targets}
-groups/%.rows:
-	@exec setpriv --pdeathsig KILL "$$JOINTCREEP_PYTHON" -m jointcreep.group $*
-"""
 
 SNAKEFILE = """# The groups of runs of a study; jointcreep study calls it. A job is a group.
 GROUPS = {groups}
@@ -249,33 +240,69 @@ def duration(seconds):
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-def environment(programs):
-    """Of make and Snakemake: where the package and the programs are; one thread for each program."""
-    package = pathlib.Path(__file__).resolve().parent.parent
-    kept = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
-    paths = [str(package), *filter(None, [kept.get("PYTHONPATH")])]
-    return {**kept, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1", "JOINTCREEP_PYTHON": sys.executable,
-            "JOINTCREEP_PROGRAMS": str(programs), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # for each program
+STOPS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 
-def command_for(out, names, jobs, profile):
-    """Writes the Makefile or the Snakefile of these groups; returns the command that makes them."""
-    if profile:
-        files.write_text(out / "Snakefile", SNAKEFILE.format(groups=names))
-        return ["snakemake", "--snakefile", "Snakefile", "--profile", profile, "--keep-going", "--nolock", "--rerun-incomplete",
-                "--rerun-triggers", "mtime", "--quiet", "--jobs", str(jobs)]
-    targets = " ".join(f"groups/{name}.rows" for name in names)
-    files.write_text(out / "Makefile", MAKEFILE.format(targets=targets))
-    return ["make", "--silent", "--keep-going", f"-j{jobs}", "-f", "Makefile", "all"]
+def work(name, out, programs, parent):
+    """In a new process: makes a group. Ctrl-C ends the study, and that ends this process without words of its own."""
+    group.die_with(parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in STOPS - {signal.SIGINT}:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+    os.environ.update(ONE_THREAD)
+    sys.exit(group.exit_code(name, out, programs))
 
 
-def end(running, profile):
-    """Ends make or Snakemake, and with it what it runs."""
-    if profile:
+def by_processes(out, programs, names, jobs):
+    """Makes groups, `jobs` of them at a time. A generator: it returns to its caller every LOOKS seconds and after each group. Processes
+    are forks of this one: they have all modules, which take longer to load than a run of a small scene."""
+    forks, waiting, running = multiprocessing.get_context("fork"), list(reversed(names)), []
+    try:
+        while waiting or running:
+            while waiting and len(running) < jobs:
+                signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)  # until the process ignores them, and is known here
+                try:
+                    process = forks.Process(target=work, args=(waiting.pop(), out, programs, os.getpid()))
+                    process.start()
+                    running.append(process)
+                finally:
+                    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+            multiprocessing.connection.wait([process.sentinel for process in running], LOOKS)
+            running = [process for process in running if process.is_alive()]
+            yield
+    finally:
+        for process in running:
+            process.kill()
+        for process in running:
+            process.join()
+
+
+def by_snakemake(out, programs, names, jobs, profile, lock):
+    """Makes groups by Snakemake, whose processes hold the lock, too. A generator: it returns to its caller every LOOKS seconds."""
+    files.write_text(out / "Snakefile", SNAKEFILE.format(groups=names))
+    command = ["snakemake", "--snakefile", "Snakefile", "--profile", profile, "--keep-going", "--nolock", "--rerun-incomplete",
+               "--rerun-triggers", "mtime", "--quiet", "--jobs", str(jobs)]
+    package, parent = pathlib.Path(__file__).resolve().parent.parent, os.getpid()
+    paths = [str(package), *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1",
+                   "JOINTCREEP_PYTHON": sys.executable, "JOINTCREEP_PROGRAMS": str(programs)}
+    try:
+        # In a process group of its own it could outlive Ctrl-C; so it is in this one, and dies with this process.
+        running = subprocess.Popen(command, cwd=out, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                   pass_fds=[lock.fileno()], preexec_fn=lambda: group.die_with(parent))
+    except FileNotFoundError:
+        raise NotWanted(f"{command[0]} is not installed; first run: sh pipelines/setup.sh studies") from None
+    try:
+        while running.poll() is None:
+            yield
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                running.wait(LOOKS)
+    finally:
         running.send_signal(signal.SIGTERM)
-    else:  # its recipes end with it (setpriv); after another signal it would say that they were terminated
-        running.kill()
-    running.wait()
+        running.wait()
 
 
 def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
@@ -283,31 +310,12 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if not missing:
         return ""
-    command, parent = command_for(out, missing, jobs, profile), os.getpid()
-
-    def prepared():
-        group.die_with(parent)
-        if not profile:  # Ctrl-C ends this process, and that ends them, without words of theirs
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        # In a process group of its own it could outlive Ctrl-C; so it is in this one, and dies with this process.
-        running = subprocess.Popen(command, cwd=out, env=environment(programs), stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.DEVNULL, pass_fds=[lock.fileno()],
-                                   preexec_fn=prepared)
-    except FileNotFoundError:
-        raise NotWanted(f"{command[0]} is not installed" + ("; first run: sh pipelines/setup.sh studies" if profile else "")) \
-            from None
-    try:
-        while running.poll() is None:
+    working = by_snakemake(out, programs, missing, jobs, profile, lock) if profile else by_processes(out, programs, missing, jobs)
+    with contextlib.closing(working):
+        for _ in working:
             tell()
             if time.monotonic() > deadline:
-                end(running, profile)
                 return TIMED_OUT
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                running.wait(LOOKS)
-    except KeyboardInterrupt:
-        end(running, profile)
-        raise
     tell()
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if missing:

@@ -1004,7 +1004,7 @@ values = [1, 2, 6]
         self.made(self.written(text + stop.format(1.0)), out)
         self.assertEqual(len(rows_of(out)), 100)
 
-        # The budget of time: the end says nothing of make.
+        # The budget of time: the end says nothing of processes that are ended.
         slow = self.programs('case "$PWD" in */timed/work/*) exec sleep 20 ;; esac', "jointgen")
         done = self.study(self.written(text + "[stop]\nhours = 2e-4\n"), self.folder / "timed", programs=slow)
         self.assertEqual(done.returncode, 3, done.stderr)
@@ -1290,7 +1290,6 @@ class Reports(Studies):
         self.assertIn(">until day 2: one of them is excavated<", page[page.index("Relative displacements"):][:3000])
         drawn = plots.draw("histories", result, pair=[("crest", "floor")]).axes[0].lines[0].get_ydata()
         self.assertAlmostEqual(drawn[-1], 1e3 * closure, places=12)
-        self.report(result, "x.html")
         for pairs, code in (("floor,crest", 0), ("floor,none", 2), ("floor", 2), (" ; ", 2), ("floor,floor", 2)):
             done = subprocess.run([self.chain.programs / "jointcreep", "report", result, "--pairs", pairs, "-o", self.folder / "p.html"],
                                   capture_output=True, text=True)
