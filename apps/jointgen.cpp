@@ -21,6 +21,7 @@
 #include "zoning/cost.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <limits>
 #include <numeric>
@@ -29,6 +30,8 @@ using namespace jointcreep;
 
 namespace
 {
+
+constexpr double silent_seconds = 5; // work that takes longer is announced
 
 const Program program{
     .name = "jointgen",
@@ -215,6 +218,11 @@ void generate(const Arguments& arguments)
     network.joints = of_file(input, [&] { return sampling::sample_joints(scene, seed, realization); });
 
     // 3. Its blocks.
+    if (const blocks::CuttingCost cost = blocks::expected_cost(scene, network.joints);
+        !arguments.quiet() && cost.seconds > silent_seconds)
+        std::cerr << program.name << ": " << network.joints.set.size() << " joints with about "
+                  << rounded(cost.crossings, 2) << " crossings: cutting may take "
+                  << 10 * std::llround(std::ceil(cost.seconds / 10)) << " s" << std::endl;
     network.blocks = of_file(input, [&] { return blocks::cut(scene, network.joints, subdivision); });
 
     // 4. Statistics of the network, beside the scene's laws.

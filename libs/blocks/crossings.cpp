@@ -1,5 +1,6 @@
 #include "blocks/crossings.hpp"
 
+#include "blocks/cut.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
 
@@ -15,6 +16,9 @@ using Eigen::Vector2d;
 namespace
 {
 
+// Measured, two sets of lines with 1e6 to 9e6 crossings (docs/cutting.md); where many joints meet in a point, less.
+constexpr double seconds_of_a_crossing = 4e-6;
+
 bool cross_in(const Box& box, const Vector2d& p, const Vector2d& p_to, const Vector2d& q,
               const Vector2d& q_to)
 {
@@ -26,6 +30,12 @@ bool cross_in(const Box& box, const Vector2d& p, const Vector2d& p_to, const Vec
     const Vector2d place = p + along * d;
     return along >= 0 && along <= 1 && along_other >= 0 && along_other <= 1 &&
            (place.array() >= box.low.array()).all() && (place.array() <= box.high.array()).all();
+}
+
+double pairs_of(const Joints& joints)
+{
+    const auto count = static_cast<double>(joints.set.size());
+    return count * (count - 1) / 2;
 }
 
 // What makes joints of a set fewer or shorter.
@@ -45,9 +55,9 @@ std::string advice_for(const Scene& scene, Index set)
 ExpectedCrossings expected_crossings(const Joints& joints, const Box& box)
 {
     const std::size_t count = joints.set.size();
-    const double pairs = static_cast<double>(count) * (static_cast<double>(count) - 1) / 2;
-    if (pairs <= most_crossings)
+    if (count < 2)
         return {};
+    const double pairs = pairs_of(joints);
     // A hundred hits or more where there are too many crossings.
     const auto tries = static_cast<std::size_t>(std::clamp(100 * pairs / most_crossings, 1e5, 3e7));
     std::mt19937_64 random;       // NOLINT: the same pairs in every run
@@ -70,6 +80,8 @@ ExpectedCrossings expected_crossings(const Joints& joints, const Box& box)
 
 void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
 {
+    if (pairs_of(joints) <= most_crossings)
+        return;
     const ExpectedCrossings expected = expected_crossings(joints, box);
     if (!(expected.number > most_crossings))
         return;
@@ -77,6 +89,21 @@ void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
                       " crossings of joints in the section; expected at most " + rounded(most_crossings, 2) +
                       ". Most are on joint set \"" + names_of(scene).joint_set[expected.set] + "\". " +
                       advice_for(scene, expected.set));
+}
+
+CuttingCost expected_cost(const Scene& scene, const Joints& joints)
+{
+    if (pairs_of(joints) * seconds_of_a_crossing < 1)
+        return {};
+    Box box{scene.outline[0], scene.outline[0]};
+    for (const Vector2d& p : scene.outline) {
+        box.low = box.low.cwiseMin(p);
+        box.high = box.high.cwiseMax(p);
+    }
+    const double crossings = expected_crossings(joints, box).number;
+    if (crossings > most_crossings)
+        return {};
+    return {crossings, crossings * seconds_of_a_crossing};
 }
 
 } // namespace jointcreep::blocks

@@ -14,7 +14,7 @@ namespace jointcreep::blocks
 inline constexpr double most_crossings = 5e7;
 
 // Crossings of two joints in a box, estimated from pairs of joints, always the same ones; exact to a tenth or so
-// where there are `most_crossings`. None is looked for if there are too few pairs for that.
+// where there are `most_crossings`, and elsewhere to a tenth where a thousandth of all pairs cross.
 struct ExpectedCrossings {
     double number = 0;
     Index set = -1; // whose joints have most of them

@@ -1,6 +1,7 @@
 // The number of crossings is known before they are found.
 
 #include "blocks/crossings.hpp"
+#include "blocks/cut.hpp"
 
 #include "model/error.hpp"
 
@@ -58,6 +59,20 @@ TEST(crossings, of_lines_through_the_section)
     const Grid grid(10000, 100); // each level one meets each upright one
     EXPECT_NEAR(blocks::expected_crossings(grid.joints, box).number, 1e8, 5e6);
     EXPECT_NEAR(blocks::expected_crossings(grid.joints, {{0, 0}, {50, 50}}).number, 0.25e8, 2e6);
+}
+
+TEST(crossings, cost_is_told_before_cutting)
+{
+    const Grid grid(1225, 100);
+    const blocks::CuttingCost cost = blocks::expected_cost(grid.scene, grid.joints);
+    EXPECT_NEAR(cost.crossings, 1.5e6, 0.1e6);
+    EXPECT_NEAR(cost.seconds, 6, 0.4);
+    const auto has_none = [&](const Grid& other) {
+        return blocks::expected_cost(grid.scene, other.joints).seconds == 0;
+    };
+    EXPECT_TRUE(has_none(Grid(1, 100)));
+    EXPECT_TRUE(has_none(Grid(300, 100)));   // little
+    EXPECT_TRUE(has_none(Grid(10000, 100))); // refused
 }
 
 TEST(crossings, too_many_are_refused_before_cutting)

@@ -6,6 +6,7 @@ import pathlib
 import resource
 import shutil
 import subprocess
+import time
 
 import h5py
 
@@ -263,6 +264,25 @@ class Refusals(ChainTest):
         scene.write_text(text)
         self.assert_refuses(BAD_INPUT, "jointgen", scene,
                             says=["scene.toml: about ", "crossings of joints", "at most 5e+07", "Increase its spacing"])
+
+    def test_long_cutting_is_announced(self):
+        """Before it begins, and not with -q."""
+        text = self.chain.text(RANDOM)
+        for spacing in 'law = "lognormal", mean_m = 7, deviation_m = 2', 'law = "normal", mean_m = 8, deviation_m = 1.5':
+            text = changed(text, f"^spacing = {{ {spacing} }}$", 'spacing = { law = "constant", mean_m = 0.02 }')
+        folder = self.chain.new_folder()
+        (folder / "scene.toml").write_text(text)
+        for more in [], ["-q"]:
+            command = [self.chain.programs / "jointgen", "scene.toml", "-o", "n.h5", *more]
+            with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as running:
+                if more:
+                    time.sleep(1)  # longer than it took to say it above
+                else:
+                    said = running.stderr.readline()
+                running.kill()
+                if more:
+                    said = running.stderr.read()
+            self.assertRegex(said, "^$" if more else r"^jointgen: \d+ joints with about \S+ crossings: cutting may take [1-9]\d+ s\n$")
 
     def test_creep_step_beyond_the_limit(self):
         """(1 - exp(-lam dT)) (1 + K/E) < 2 with K/E = 10 and lam = 0.01 per day: dT < 20.067 days."""
