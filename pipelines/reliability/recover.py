@@ -1,15 +1,37 @@
 """Stops every run halfway and recovers it, and restarts every run from its last checkpoint: MOOSE's two habits.
 
-Scenes are all those of data and of tests/pipeline; N is how many of them, at most. The bytes have to be those of a run without
+Scenes are all those of data and of tests/pipeline, and those that the tests write: the tests of whole programs run with a
+demsolve that keeps its input and options. N is how many, at most. The bytes have to be those of a run without
 checkpoints that was not stopped.
 """
 
+import json
 import shutil
+import subprocess
+import sys
 
-from campaign import ROOT, Campaign
+from campaign import LONGEST, ROOT, Campaign, ended
 from kills import Job
 
 CHECKPOINT = "kept.h5"
+NOT_RECORDED = ("campaign", "documentation", "install", "standard_output")  # tests of the tests, of pages, of files with other names
+LONGEST_TEST = 1200  # s
+RECORDER = """#!{python}
+import hashlib, json, os, pathlib, sys
+words = sys.argv[1:]
+outputs = [n for n, word in enumerate(words) if word in ("-o", "--output")]
+inputs = [n for n, word in enumerate(words) if word.endswith(".h5") and n - 1 not in outputs and os.path.isfile(word)]
+if len(outputs) == len(inputs) == 1 and not any("checkpoint" in word for word in words):
+    content = pathlib.Path(words[inputs[0]]).read_bytes()
+    options = [word for n, word in enumerate(words)
+               if n not in (inputs[0], outputs[0], outputs[0] + 1) and word not in ("-q", "--quiet")]
+    folder = pathlib.Path({kept!r}) / hashlib.sha256(content + json.dumps(options).encode()).hexdigest()[:16]
+    if not folder.exists():
+        folder.mkdir()
+        (folder / "joints.h5").write_bytes(content)
+        (folder / "options.json").write_text(json.dumps(options))
+os.execv({real!r}, [{real!r}, *words])
+"""
 
 
 def scenes():
@@ -19,10 +41,26 @@ def scenes():
     return [path for path in found if "[section]" in (text := path.read_text()) and "increments_tolerance" not in text]
 
 
-def recovered(campaign, name, joints):
-    """Both habits on one scene."""
-    group = "/".join(name.split("/")[:2])
-    chain, solve = campaign.chain, [campaign.programs / "demsolve", "joints.h5", "-o", "result.h5"]
+def recorded(campaign):
+    """Folders with the input of demsolve and its options, of each call by the tests of whole programs."""
+    programs, kept = campaign.chain.new_folder(), campaign.chain.new_folder()
+    for path in campaign.programs.iterdir():
+        (programs / path.name).symlink_to(path)
+    recorder = programs / "demsolve"
+    recorder.unlink()
+    recorder.write_text(RECORDER.format(python=sys.executable, kept=str(kept), real=str(campaign.programs / "demsolve")))
+    recorder.chmod(0o755)
+    for test in sorted(ROOT.glob("tests/pipeline/*_test.py")):
+        if not test.name.startswith(NOT_RECORDED) and "demsolve" in test.read_text():
+            subprocess.run([sys.executable, test, programs, ROOT], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                           timeout=LONGEST_TEST)  # what the tests say is no part of this
+    return sorted(kept.iterdir())
+
+
+def recovered(campaign, name, joints, options=()):
+    """Both habits on one scene, or on one call with these options."""
+    group = "/".join(name.split("/")[:2]) if name.startswith(("data", "tests")) else "calls by tests"
+    chain, solve = campaign.chain, [campaign.programs / "demsolve", "joints.h5", "-o", "result.h5", *options]
     plain = Job(name, solve, [joints], [])
     plain.undisturbed(chain.new_folder())
     job = Job(name, [*solve, "--checkpoint", CHECKPOINT], [joints], ["result.h5"], CHECKPOINT)
@@ -47,13 +85,20 @@ def recovered(campaign, name, joints):
 
 
 def body(campaign):
-    for path in scenes()[:campaign.n]:
+    found = scenes()
+    for path in found[:campaign.n]:
         name = str(path.relative_to(ROOT))
         folder = campaign.chain.new_folder()
         network = campaign.chain.run("jointgen", path, folder / "network.h5")
         recovered(campaign, name, campaign.chain.run("strength-averaging", network, folder / "joints.h5"))
+    left = campaign.n - len(found)
+    for folder in recorded(campaign)[:left] if left > 0 else []:
+        options = json.loads((folder / "options.json").read_text())
+        tried = ended([campaign.programs / "demsolve", folder / "joints.h5", "-o", folder / "tried.h5", *options], LONGEST)
+        if tried.code in (0, 3):  # the test wants the others to be refused
+            recovered(campaign, f"calls by tests/{folder.name}", folder / "joints.h5", options)
 
 
 if __name__ == "__main__":
     OUTCOMES = ["recovered", "restarted", "no checkpoint", "ended before", "different"]
-    Campaign("runs of", OUTCOMES, OUTCOMES[4:], 1000).run(body)
+    Campaign("runs of", OUTCOMES, OUTCOMES[4:], 2000).run(body)
