@@ -1,9 +1,11 @@
 """The same scenes by programs that other compilers and options made: g++ -O2 and clang++ 16 against the given programs, g++ -O3's.
 
 Scenes are all those of data and of tests/pipeline; N is how many of them, at most. -O2 and -O3 of g++ have to give the same
-bytes. clang++ may round otherwise: every dataset has to agree to CLOSE of its largest number.
+bytes. clang++ may round otherwise: every dataset has to agree to CLOSE of its largest number. With --built the programs of a folder
+are compared, in place of those that it would build: they have to give the same bytes.
 """
 
+import pathlib
 import shutil
 import subprocess
 
@@ -58,7 +60,8 @@ def farthest(one, other):
 
 
 def body(campaign):
-    others = {name: build(*of) for name, of in BUILDS.items()}
+    built = campaign.options.built
+    others = {f"programs in {built}": built.resolve()} if built else {name: build(*of) for name, of in BUILDS.items()}
     for scene in scenes()[:campaign.n]:
         case = str(scene.relative_to(ROOT))
         first, codes = results(campaign, campaign.programs, scene, None)
@@ -79,4 +82,5 @@ def body(campaign):
 
 if __name__ == "__main__":
     OUTCOMES = ["same bytes", "close", "different"]
-    Campaign("results by", OUTCOMES, OUTCOMES[2:], 1000).run(body)
+    Campaign("results by", OUTCOMES, OUTCOMES[2:], 1000,
+             lambda parser: parser.add_argument("--built", type=pathlib.Path, help="folder of the other programs")).run(body)

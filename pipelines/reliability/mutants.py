@@ -5,7 +5,8 @@ becomes two with a mark between them (mutant.hpp). Where that does not compile, 
 without a mutant, and tells which places it reaches and how long it takes. Then the tests that reach a mutant run, the fastest
 first, until one fails, ends by a signal or takes far longer than before. Mutants that no test finds are printed: some change
 nothing that matters. The tests are the C++ tests, and those of WHOLE, which run the programs; of the subdivision and the
-statistics only those of NEAR, as nearly all others come through these places, too.
+statistics only those of NEAR, as nearly all others come through these places, too. --only laws --target joint_tests is a short form: mutants of
+one group, and the tests of these programs.
 """
 
 import concurrent.futures
@@ -97,8 +98,9 @@ class Mutants:
         shutil.copytree(ROOT, self.tree, ignore=ignored)
         shutil.copy(pathlib.Path(__file__).with_name("mutant.hpp"), self.tree / "libs")
         self.chosen = []  # (number, group, path, start, end, operator)
-        share = campaign.n // len(GROUPS)
-        for group, patterns in GROUPS.items():
+        self.groups = {group: patterns for group, patterns in GROUPS.items() if campaign.options.only in (None, group)}
+        share = campaign.n // len(self.groups)
+        for group, patterns in self.groups.items():
             found = [(path, *place) for pattern in patterns for path in sorted(ROOT.glob(pattern))
                      for place in places(path.read_text())]
             for path, *place in chance("mutants", campaign.seed, DRAWN_AS.get(group, group)).sample(found, min(2 * share, len(found))):
@@ -118,8 +120,9 @@ class Mutants:
         subprocess.run(configure, cwd=self.tree, check=True, stdout=subprocess.DEVNULL)
         while True:
             self.write()
-            done = subprocess.run(["cmake", "--build", "--preset", "test", "--", "-k", "0"], cwd=self.tree, capture_output=True, text=True,
-                                  check=False)
+            targets = [word for target in self.campaign.options.target for word in ("--target", target)]
+            done = subprocess.run(["cmake", "--build", "--preset", "test", *targets, "--", "-k", "0"], cwd=self.tree, capture_output=True,
+                                  text=True, check=False)
             if done.returncode == 0:
                 return
             # All lines that an error names, as templates are at fault where they are called.
@@ -135,7 +138,7 @@ class Mutants:
 
     def choose(self):
         """So many of each group, of those that compile."""
-        share, count = self.campaign.n // len(GROUPS), {}
+        share, count = self.campaign.n // len(self.groups), {}
         for one in self.chosen:
             count[one[1]] = count.get(one[1], 0) + 1
             if count[one[1]] <= share:
@@ -146,6 +149,8 @@ class Mutants:
         told = subprocess.run(["ctest", "--preset", "test", "--show-only=json-v1"], cwd=self.tree, check=True, capture_output=True).stdout
         tests = [Test(self.tree, test["name"], test["command"]) for test in json.loads(told)["tests"]
                  if not test["name"].startswith("pipeline/") or test["name"].removeprefix("pipeline/") in WHOLE]
+        if self.campaign.options.target:
+            tests = [test for test in tests if pathlib.Path(test.command[0]).name in self.campaign.options.target]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             for _ in pool.map(Test.first_run, tests):
                 pass
@@ -172,6 +177,11 @@ def body(campaign):
                            by or f"{mutants.text[path].splitlines()[line - 1].strip()} (mutant {number}, reached by {reaching} tests)")
 
 
+def options(parser):
+    parser.add_argument("--only", choices=GROUPS, help="mutants of this group")
+    parser.add_argument("--target", action="append", default=[], help="build and use the tests of this program; can be given several times")
+
+
 if __name__ == "__main__":
     OUTCOMES = ["found", "lives"]
-    Campaign("mutants of", OUTCOMES, OUTCOMES[1:], 200).run(body)
+    Campaign("mutants of", OUTCOMES, OUTCOMES[1:], 200, options).run(body)

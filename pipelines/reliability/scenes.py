@@ -11,7 +11,7 @@ from random_scene import random_scene
 
 ENERGY = "the energy balance of the dynamic analysis is off"  # a run without equilibrium that says so is refused by name
 WRONG = "the result is wrong"
-LONGEST = 600  # s of the processor; a run that takes longer hangs
+LONGEST = 1200  # s of the processor; a run that takes longer hangs
 
 
 def trial(campaign, case, folder):

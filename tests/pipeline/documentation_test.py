@@ -73,8 +73,9 @@ class Documentation(ChainTest):
         self.assertEqual(commands[:2], [BUILD_AND_RUN, BUILD_AND_TEST])
         run = self.chain.text(".ci/run").splitlines()
         self.assertEqual([line for line in run if "pipelines" in line],
-                         [BUILD_AND_TEST, "sh pipelines/setup.sh docs", "sh pipelines/setup.sh develop", "sh pipelines/tidy.sh"])
-        for path in "pipelines/setup.sh", "pipelines/slope/Makefile", ".ci/run":
+                         [f"{BUILD_AND_TEST} || exit", "sh pipelines/check.sh --changed", "sh pipelines/setup.sh docs",
+                          "sh pipelines/setup.sh develop", "sh pipelines/tidy.sh"])
+        for path in "pipelines/setup.sh", "pipelines/check.sh", "pipelines/slope/Makefile", ".ci/run":
             self.assertTrue((self.chain.source / path).is_file(), path)
 
     def planned(self, command):
