@@ -211,6 +211,18 @@ class Safety(ChainTest):
         quiet = self.chain.run("demsolve", joints, joints.with_name("quiet.h5"), "-q")
         self.assertNotIn("/warnings/text", datasets(quiet))
 
+    def test_large_displacements_are_warned_of(self):
+        """Of the section of 30 by 20 m: its diagonal is 36 m."""
+        joints = self.chain.joints(changed(self.chain.small(), "^youngs_modulus_GPa = .*$", "youngs_modulus_GPa = 0.0015"))
+        done = self.chain.answer("demsolve", joints, "-q", "-o", joints.with_name("result.h5"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = re.fullmatch(r"demsolve: warning: displacement of (\S+) m, (\S+) percent of the section's size: too much .*\n", done.stderr)
+        self.assertIsNotNone(said, done.stderr)
+        with h5py.File(joints.with_name("result.h5")) as file:
+            largest = np.linalg.norm(file["/states/displacement"][-1], axis=-1).max()
+        self.assertAlmostEqual(float(said[1]), largest, delta=2e-3)
+        self.assertAlmostEqual(float(said[2]), 100 * float(said[1]) / np.hypot(30, 20), delta=5e-3)
+
     def test_warnings_are_counted(self):
         """At the end of each summary, those of earlier programs apart; the file has both."""
         text = changed(self.chain.text("data/verification/incline/scene.toml"), "^.*_kelvin_.*\n", "", count=4)  # nothing creeps

@@ -57,7 +57,7 @@ class SameBytes(ChainTest):
         copy = self.chain.new_folder() / "copy of joints.h5"
         copy.write_bytes(joints.read_bytes())
         self.assertEqual(self.run_to("other name.h5", "demsolve", copy, *arguments), result)
-        for threads in 1, 2:
+        for threads in 1, 2, 3, 7:
             with self.subTest(threads=threads):
                 self.assertEqual(self.run_to("result.h5", "demsolve", joints, *arguments, "--threads", threads), result)
         self.assertNotEqual(self.run_to("result.h5", "demsolve", joints, *arguments, "--no-creep"), result)
