@@ -41,6 +41,7 @@ campaign() {
   PYTHONPATH="pipelines:pipelines/plots:tests/pipeline" ASAN_OPTIONS=detect_leaks=0 /usr/bin/python3 "pipelines/reliability/$name.py" \
     build/release/apps out/checks "$@"
 }
+cmake --build --preset test # of the same version
 campaign compilers --built build/asan/apps --n 12
 campaign mutants --only laws --target joint_tests --n 8
 echo "$digest" >"$record"

@@ -61,6 +61,7 @@ import dataclasses
 import difflib
 import itertools
 import math
+import os
 import pathlib
 import shlex
 import shutil
@@ -182,7 +183,7 @@ def study(source, options, beside):
     if profile and not (pathlib.Path(profile) / "config.yaml").exists():
         raise NotWanted(f"--snakemake: {profile} has no config.yaml; expected the folder of a profile")
     out, quiet = pathlib.Path(options["output"]).resolve(), options.get("quiet", False)
-    with runs.locked(out) as lock:
+    with runs.stoppable(), runs.locked(out) as lock:
         if options.get("finish") and not (out / "plan.json").exists():
             raise NotWanted(f"--finish: {out} is not the folder of a study; expected one that was stopped")
         plan.make(of_study, out, programs)
@@ -194,11 +195,11 @@ def study(source, options, beside):
             return finish(of_study, out, rows, "by --finish" * (ended < of_study.design.runs), quiet)
         from . import answers  # after the study is known to be right: it takes longer to load
         try:
-            with runs.stoppable():
-                rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
-                                      quiet, lambda rows: answers.enough(of_study, rows), lock)
+            rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
+                                  quiet, lambda rows: answers.enough(of_study, rows), lock)
         except KeyboardInterrupt as error:
-            signal.signal(signal.SIGINT, signal.SIG_IGN)  # what follows takes a moment only, and then all ends
+            for number in runs.STOPS:
+                signal.signal(number, signal.SIG_IGN)  # what follows takes a moment only, and then all ends
             raise runs.Stopped(runs.exit_code_of(error), finish_early(of_study, out, "by a signal", quiet)) from None
         except NotDone as error:
             raise NotDone(f"{error}\n{finish_early(of_study, out, 'without runs that could not be made', quiet)}") from None
@@ -288,6 +289,7 @@ def asks_for_help(arguments):
 
 def main(arguments, version, beside):
     """The exit code of the command line."""
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # it was closed
     if asks_for_help(arguments):
         print(__doc__, end="")
         return 0

@@ -145,6 +145,7 @@ def make(study, out, programs):
     files.write_text(out / "design.csv", files.csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
                                          [[run, network, *of_run] for run, (network, of_run) in enumerate(zip(networks, values))]))
     files.write_text(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
+    planned.cache_clear()
     return scene
 
 

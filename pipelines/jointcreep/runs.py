@@ -17,6 +17,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 
 import numpy as np
@@ -66,7 +67,11 @@ def raise_stopped(number, _):
 
 @contextlib.contextmanager
 def stoppable(stop=raise_stopped):
-    """SIGTERM and SIGHUP stop a study as Ctrl-C does, or call `stop`. Signals that are ignored (nohup) stay so."""
+    """SIGTERM and SIGHUP stop a study as Ctrl-C does, or call `stop`. Signals that are ignored (nohup) stay so. In a thread of another
+    program there is nothing to do: signals are for its first one."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
     before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
               if signal.getsignal(number) is not signal.SIG_IGN}
     try:
@@ -225,13 +230,14 @@ class Progress:
         left = self.seconds_left()
         line = f"{done} of {self.total} {self.what}" + (f", {duration(left)} left" if left is not None and done < self.total else "")
         line += str(present) if done < self.total else ""
-        if sys.stderr.isatty():
-            width = shutil.get_terminal_size().columns - 1
-            print(f"\r{textwrap.shorten(line, width, placeholder=' ...'):{width}}", end="" if done < self.total else "\n", file=sys.stderr,
-                  flush=True)
-        elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told or time.monotonic() - self.spoke > SILENT:
-            self.told, self.spoke = done, time.monotonic()
-            print(line, file=sys.stderr, flush=True)
+        with contextlib.suppress(OSError):  # of a stderr that nobody reads any more
+            if sys.stderr.isatty():
+                width = shutil.get_terminal_size().columns - 1
+                print(f"\r{textwrap.shorten(line, width, placeholder=' ...'):{width}}", end="" if done < self.total else "\n", file=sys.stderr,
+                      flush=True)
+            elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told or time.monotonic() - self.spoke > SILENT:
+                self.told, self.spoke = done, time.monotonic()
+                print(line, file=sys.stderr, flush=True)
 
 
 def duration(seconds):
@@ -256,22 +262,41 @@ def work(name, out, programs, parent):
     sys.exit(group.exit_code(name, out, programs))
 
 
+def started(forks, *of_work):
+    """A process that works, or None where the system has none to give."""
+    process = forks.Process(target=work, args=of_work)
+    try:
+        process.start()
+    except OSError as error:
+        print(f"jointcreep: no process for a group of runs: {error.strerror}", file=sys.stderr, flush=True)
+        return None
+    return process
+
+
 def by_processes(out, programs, names, jobs):
-    """Makes groups, `jobs` of them at a time. A generator: it returns to its caller every LOOKS seconds and after each group. Processes
-    are forks of this one: they have all modules, which take longer to load than a run of a small scene."""
-    forks, waiting, running = multiprocessing.get_context("fork"), list(reversed(names)), []
+    """Makes groups, `jobs` of them at a time, or as many as the system has processes for. A generator: it returns to its caller every LOOKS
+    seconds and after each group. Processes are forks of this one: they have all modules, which take longer to load than a run of a
+    small scene."""
+    forks, waiting, running = multiprocessing.get_context("fork"), list(reversed(names)), {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
                 signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)  # until the process ignores them, and is known here
                 try:
-                    process = forks.Process(target=work, args=(waiting.pop(), out, programs, os.getpid()))
-                    process.start()
-                    running.append(process)
+                    process = started(forks, waiting[-1], out, programs, os.getpid())
+                    if process:
+                        running[process] = waiting.pop()
                 finally:
                     signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+                if not process:
+                    jobs = len(running)
+            if not running:
+                return
             multiprocessing.connection.wait([process.sentinel for process in running], LOOKS)
-            running = [process for process in running if process.is_alive()]
+            for process in [process for process in running if not process.is_alive()]:
+                name = running.pop(process)
+                if process.exitcode < 0:
+                    print(f"jointcreep: group {name} was stopped (signal {-process.exitcode})", file=sys.stderr, flush=True)
             yield
     finally:
         for process in running:

@@ -382,6 +382,59 @@ class Runs(Studies):
             self.assertLess(time.monotonic(), end, "something works on after the study was killed")
             time.sleep(0.01)
 
+    def test_a_group_that_is_killed(self):
+        """The message names it and the signal; the same command makes it."""
+        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+        programs = self.programs(f'[ "$1" = --version ] || exec sleep {LONGEST_RUN}')
+        running = subprocess.Popen([*map(str, self.command(study, out, programs=programs))], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        end = time.monotonic() + LONGEST_RUN
+        while not (out / "work" / "000000" / "joints.h5").exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        for _ in range(2):  # one at a time; the second one is begun after it
+            workers = pathlib.Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
+            os.kill(int(workers[0]), signal.SIGKILL)
+            time.sleep(1)
+        said = running.communicate(timeout=LONGEST_RUN)[1]
+        self.assertEqual(running.returncode, 4, said)
+        for name in "000000", "000001":
+            self.assertIn(f"jointcreep: group {name} was stopped (signal 9)\n", said)
+        self.assert_same(self.made(study, self.folder / "whole"), self.made(study, out))
+
+    def test_without_enough_processes(self):
+        """As many groups at a time as the system has processes for; without any the study says that runs are missing."""
+        study = self.written(NETWORKS.format(runs=6))
+        command, real, calls = importlib.import_module("jointcreep.command"), runs.started, []
+
+        def started(*of_work):
+            calls.append(of_work)
+            return None if len(calls) in (3, 5) else real(*of_work)
+
+        words = ["study", str(study), "-o", str(self.folder / "few"), "-q", "-j6"]
+        with unittest.mock.patch.object(runs, "started", started):
+            self.assertEqual(command.main(words, "0.1.0", self.chain.programs), 0)
+        self.assertEqual(len(calls), 8)
+        self.assert_same(self.made(study, self.folder / "whole"), self.folder / "few")
+        words[3] = str(self.folder / "none")
+        with unittest.mock.patch.object(runs, "started", lambda *_: None), contextlib.redirect_stderr(io.StringIO()) as said:
+            self.assertEqual(command.main(words, "0.1.0", self.chain.programs), 4)
+        self.assertIn("6 of 6 groups of runs in ", said.getvalue())
+
+    def test_a_folder_that_is_made_anew(self):
+        """In the same process: nothing is kept of the study that was there."""
+        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+        command = importlib.import_module("jointcreep.command")
+        found = []
+        for text in SCENE, SCENE.replace("youngs_modulus_GPa = 10", "youngs_modulus_GPa = 1"):
+            (self.folder / "scene.toml").write_text(text)
+            shutil.rmtree(out, ignore_errors=True)
+            self.assertEqual(command.main(["study", str(study), "-o", str(out), "-q"], "0.1.0", self.chain.programs), 0)
+            found.append((out / "runs.csv").read_bytes())
+        self.made(study, self.folder / "whole")
+        self.assertEqual(found[1], (self.folder / "whole" / "runs.csv").read_bytes())
+        self.assertNotEqual(*found)
+
     def test_two_studies_in_one_folder(self):
         study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
         running = self.hanging(study, out)
