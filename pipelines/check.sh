@@ -2,7 +2,7 @@
 # Checks of the C++ sources that take long:
 #   1. the C++ tests with the address and undefined-behaviour sanitizers, among them short forms of the fuzzers;
 #   2. scenes by programs with sanitizers, which have to give the bytes of the release programs;
-#   3. some mutants of the joint laws, which the tests have to find.
+#   3. some mutants of the laws of joints and rock, which the tests have to find.
 # Needs `sh pipelines/setup.sh test`. The digest of the sources that pass is kept in pipelines/checked.txt: commit it with them.
 #
 #   sh pipelines/check.sh            the checks
@@ -43,5 +43,5 @@ campaign() {
 }
 cmake --build --preset test # of the same version
 campaign compilers --built build/asan/apps --n 12
-campaign mutants --only laws --target joint_tests --n 8
+campaign mutants --only laws --target joint_tests --target rock_tests --n 8
 echo "$digest" >"$record"

@@ -5,8 +5,8 @@ becomes two with a mark between them (mutant.hpp). Where that does not compile, 
 without a mutant, and tells which places it reaches and how long it takes. Then the tests that reach a mutant run, the fastest
 first, until one fails, ends by a signal or takes far longer than before. Mutants that no test finds are printed: some change
 nothing that matters. The tests are the C++ tests, and those of WHOLE, which run the programs; of the subdivision and the
-statistics only those of NEAR, as nearly all others come through these places, too. --only laws --target joint_tests is a short form: mutants of
-one group, and the tests of these programs.
+statistics only those of NEAR, as nearly all others come through these places, too. --only laws --target joint_tests --target rock_tests
+is a short form: mutants of one group, and the tests of these programs.
 """
 
 import concurrent.futures
@@ -148,7 +148,7 @@ class Mutants:
         """The fastest first."""
         told = subprocess.run(["ctest", "--preset", "test", "--show-only=json-v1"], cwd=self.tree, check=True, capture_output=True).stdout
         tests = [Test(self.tree, test["name"], test["command"]) for test in json.loads(told)["tests"]
-                 if not test["name"].startswith("pipeline/") or test["name"].removeprefix("pipeline/") in WHOLE]
+                 if "command" in test and (not test["name"].startswith("pipeline/") or test["name"].removeprefix("pipeline/") in WHOLE)]
         if self.campaign.options.target:
             tests = [test for test in tests if pathlib.Path(test.command[0]).name in self.campaign.options.target]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
