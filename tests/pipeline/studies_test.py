@@ -385,17 +385,15 @@ class Runs(Studies):
     def test_a_group_that_is_killed(self):
         """The message names it and the signal; the same command makes it."""
         study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
-        programs = self.programs(f'[ "$1" = --version ] || exec sleep {LONGEST_RUN}')
+        programs = self.programs(f'[ "$1" = --version ] || {{{{ echo "$PPID" >> "{{folder}}/workers"; exec sleep {LONGEST_RUN}; }}}}')
         running = subprocess.Popen([*map(str, self.command(study, out, programs=programs))], stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
-        end = time.monotonic() + LONGEST_RUN
-        while not (out / "work" / "000000" / "joints.h5").exists():
-            self.assertLess(time.monotonic(), end)
-            time.sleep(0.01)
-        for _ in range(2):  # one at a time; the second one is begun after it
-            workers = pathlib.Path(f"/proc/{running.pid}/task/{running.pid}/children").read_text().split()
-            os.kill(int(workers[0]), signal.SIGKILL)
-            time.sleep(1)
+        end, workers = time.monotonic() + LONGEST_RUN, programs / "workers"
+        for count in 1, 2:  # one at a time
+            while not workers.exists() or len(workers.read_text().splitlines()) < count:
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.01)
+            os.kill(int(workers.read_text().split()[-1]), signal.SIGKILL)
         said = running.communicate(timeout=LONGEST_RUN)[1]
         self.assertEqual(running.returncode, 4, said)
         for name in "000000", "000001":
