@@ -35,13 +35,7 @@ repeats="$repeats:redundant.backward_keeps_*:redundant.the_error_estimate_*:*/re
 repeats="$repeats:sensitivity.of_joints_that_slip_*:cost.number_of_zones_in_the_sections_of_data:SampleJoints.RefusesTooMany*"
 GTEST_FILTER="-$repeats" ctest --preset asan -j "$(nproc)" -E '^(pipeline/.*|statistics/verdicts|sampling/acceptance|sampling/joint_statistics)$'
 
-campaign() {
-  name="$1"
-  shift
-  PYTHONPATH="pipelines:pipelines/plots:tests/pipeline" ASAN_OPTIONS=detect_leaks=0 /usr/bin/python3 "pipelines/reliability/$name.py" \
-    build/release/apps out/checks "$@"
-}
 cmake --build --preset test # of the same version
-campaign compilers --built build/asan/apps --n 12
-campaign mutants --only laws --target joint_tests --target rock_tests --n 8
+ASAN_OPTIONS=detect_leaks=0 make -C pipelines/reliability compilers N=12 OUT=out/checks OPTIONS="--built $PWD/build/asan/apps"
+make -C pipelines/reliability mutants N=8 OUT=out/checks OPTIONS="--only laws --target joint_tests --target rock_tests"
 echo "$digest" >"$record"

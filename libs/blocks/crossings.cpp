@@ -52,6 +52,16 @@ std::string advice_for(const Scene& scene, Index set)
 
 } // namespace
 
+Box box_of(const Polygon& outline)
+{
+    Box box{outline[0], outline[0]};
+    for (const Vector2d& p : outline) {
+        box.low = box.low.cwiseMin(p);
+        box.high = box.high.cwiseMax(p);
+    }
+    return box;
+}
+
 ExpectedCrossings expected_crossings(const Joints& joints, const Box& box)
 {
     const std::size_t count = joints.set.size();
@@ -95,12 +105,7 @@ CuttingCost expected_cost(const Scene& scene, const Joints& joints)
 {
     if (pairs_of(joints) * seconds_of_a_crossing < 1)
         return {};
-    Box box{scene.outline[0], scene.outline[0]};
-    for (const Vector2d& p : scene.outline) {
-        box.low = box.low.cwiseMin(p);
-        box.high = box.high.cwiseMax(p);
-    }
-    const double crossings = expected_crossings(joints, box).number;
+    const double crossings = expected_crossings(joints, box_of(scene.outline)).number;
     if (crossings > most_crossings)
         return {};
     return {crossings, crossings * seconds_of_a_crossing};

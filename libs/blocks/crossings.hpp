@@ -9,6 +9,9 @@
 namespace jointcreep::blocks
 {
 
+// The smallest box around an outline.
+Box box_of(const Polygon& outline);
+
 // More are refused: they take five minutes and 22 GB (page docs/cutting.md), ten times as many do not fit the
 // numbers of edges.
 inline constexpr double most_crossings = 5e7;

@@ -137,7 +137,7 @@ public:
 
     Blocks blocks()
     {
-        check_crossings(scene_, joints_, section_box());
+        check_crossings(scene_, joints_, box_of(outlines_[0]));
         draw_lines();
         const int most_passes = 60;
         for (int pass = 0;; ++pass) {
@@ -146,7 +146,7 @@ public:
                                   " passes edges still come closer than " + shown(reach_) +
                                   " m; try a smaller shortest_edge_m");
             graph_ = subdivision_ == Subdivision::cgal ? arrange_with_cgal(graph_, sources_)
-                                                       : arrange(graph_, sources_, section_box());
+                                                       : arrange(graph_, sources_, box_of(outlines_[0]));
             drop_outside();
             prune_ends();
             if (!merge_pass(graph_, sources_, outlines_, {reach_, scene_.cutting.smallest_angle}, report_))
@@ -310,16 +310,6 @@ private:
     bool is_in_section(const Vector2d& place) const
     {
         return outline_.holds(place) && holes_.first_around(place) < 0;
-    }
-
-    Box section_box() const
-    {
-        Box box{outlines_[0][0], outlines_[0][0]};
-        for (const Vector2d& p : outlines_[0]) {
-            box.low = box.low.cwiseMin(p);
-            box.high = box.high.cwiseMax(p);
-        }
-        return box;
     }
 
     double section_area() const

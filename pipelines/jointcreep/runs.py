@@ -32,6 +32,9 @@ SILENT = 60  # s, after which there is one in any case
 LONG = 10  # s from which something is said of runs that have not ended
 CLOCKS = 1  # s by which the clocks of files and of this machine may differ
 TIMED_OUT = "timed out"
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # for each program
+STOPS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+FORKS = multiprocessing.get_context("fork")
 
 SNAKEFILE = """# The groups of runs of a study; jointcreep study calls it. A job is a group.
 GROUPS = {groups}
@@ -246,10 +249,6 @@ def duration(seconds):
     return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
 
 
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # for each program
-STOPS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
-
-
 def work(name, out, programs, parent):
     """In a new process: makes a group. Ctrl-C ends the study, and that ends this process without words of its own."""
     group.die_with(parent)
@@ -262,33 +261,31 @@ def work(name, out, programs, parent):
     sys.exit(group.exit_code(name, out, programs))
 
 
-def started(forks, *of_work):
-    """A process that works, or None where the system has none to give."""
-    process = forks.Process(target=work, args=of_work)
+def start(running, name, out, programs):
+    """Starts a process that makes a group, and adds it to `running`. Returns whether the system had a process to give."""
+    process = FORKS.Process(target=work, args=(name, out, programs, os.getpid()))
+    signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)  # until the process ignores them, and is known here
     try:
         process.start()
+        running[process] = name
     except OSError as error:
         print(f"jointcreep: no process for a group of runs: {error.strerror}", file=sys.stderr, flush=True)
-        return None
-    return process
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
+    return process in running
 
 
 def by_processes(out, programs, names, jobs):
     """Makes groups, `jobs` of them at a time, or as many as the system has processes for. A generator: it returns to its caller every LOOKS
     seconds and after each group. Processes are forks of this one: they have all modules, which take longer to load than a run of a
     small scene."""
-    forks, waiting, running = multiprocessing.get_context("fork"), list(reversed(names)), {}
+    waiting, running = list(reversed(names)), {}
     try:
         while waiting or running:
             while waiting and len(running) < jobs:
-                signal.pthread_sigmask(signal.SIG_BLOCK, STOPS)  # until the process ignores them, and is known here
-                try:
-                    process = started(forks, waiting[-1], out, programs, os.getpid())
-                    if process:
-                        running[process] = waiting.pop()
-                finally:
-                    signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPS)
-                if not process:
+                if start(running, waiting[-1], out, programs):
+                    waiting.pop()
+                else:
                     jobs = len(running)
             if not running:
                 return

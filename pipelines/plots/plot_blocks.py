@@ -2,9 +2,8 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The colour scale leaves out the smallest blocks, which together have 1 percent of the area: they have its first colour. Rock
-outside of the regions of joint sets (region_m) is grey. With a window the scale is that of the blocks completely inside of it;
-larger blocks are grey.
+The smallest blocks have the first colour of the scale: those that have 1 percent of the area in all. Rock outside the regions of
+joint sets (region_m) is grey. With a window, the scale has the sizes of the blocks inside the window. Larger blocks are grey.
 """
 
 import matplotlib.colors

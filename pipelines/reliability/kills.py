@@ -22,6 +22,7 @@ SMALL = "data/verification/two-pillars/scene.toml"  # for what runs many times: 
 FIT = "kelvin-stiffness,joint-stiffness"
 OLD = b"a file from before"
 OF_A_STUDY = re.compile(r"/out/(realizations/)?(groups/|work/|study\.lock$|times\.csv$)")  # differ between runs
+UNFINISHED = re.compile(r"\.partial-\w+$|\.work/|\.new$|/(checkpoint\.h5|run\.json)$")  # of programs, realizations, jointcreep run
 OF_A_FILE = ["write", "pwrite64", "ftruncate", "fsync"]  # system calls that write: with the number of a file, or with its name
 OF_A_NAME = ["openat", "rename", "unlink", "unlinkat", "link"]
 AT_A_WRITE, AT_A_TIME = "same bytes, killed at a write", "same bytes, killed at a time"  # what came of a kill
@@ -37,8 +38,6 @@ runs = 3
 [[collect]]
 what = "failed"
 """
-
-
 TRACES = "x1_m,y1_m,x2_m,y2_m\n" + "".join(f"{x},{y},{x + 3},{y + 1 + 0.05 * x}\n" for x in range(2, 28) for y in range(x % 3, 20, 3))
 
 
@@ -110,11 +109,12 @@ class Job:
                 with h5py.File(folder / name) as file:
                     if file.attrs["complete"] != 1:
                         return f"{name} is not complete"
-            elif name in self.whole and not name.endswith("/run.json"):  # which grows
-                if content not in (self.whole[name], old.get(name)):
-                    return f"{name} is there, and is not whole"
-            elif not re.search(r"\.partial-\w+$|\.work/|\.new$|/(checkpoint\.h5|run\.json)$", name):  # of programs, of runs
+            elif UNFINISHED.search(name):
+                continue
+            elif name not in self.whole:
                 return f"{name} is there"
+            elif content not in (self.whole[name], old.get(name)):
+                return f"{name} is there, and is not whole"
         missing = [name for name in (*self.given, *old) if not (folder / name).exists()]
         return f"{missing[0]} is gone" if missing else ""
 

@@ -14,6 +14,7 @@ from kills import Job
 
 CHECKPOINT = "kept.h5"
 EVERY = "0.0005"
+CALLS = "calls by tests"
 NOT_RECORDED = ("campaign", "documentation", "install", "standard_output")  # tests of the tests, of pages, of files with other names
 LONGEST_TEST = 1200  # s
 RECORDER = """#!{python}
@@ -60,9 +61,8 @@ def recorded(campaign):
     return sorted(kept.iterdir())
 
 
-def recovered(campaign, name, joints, options=()):
-    """Both habits on one scene, or on one call with these options."""
-    group = "/".join(name.split("/")[:2]) if name.startswith(("data", "tests")) else "calls by tests"
+def recovered(campaign, group, name, joints, options=()):
+    """Both habits on one scene, or on one call with these options; counted in the group."""
     chain, solve = campaign.chain, [campaign.programs / "demsolve", "joints.h5", "-o", "result.h5", *options]
     plain = Job(name, solve, [joints], [])
     plain.undisturbed(chain.new_folder())
@@ -91,10 +91,10 @@ def recovered(campaign, name, joints, options=()):
 def body(campaign):
     found = scenes()
     for path in found[:campaign.n]:
-        name = str(path.relative_to(ROOT))
+        name = path.relative_to(ROOT)
         folder = campaign.chain.new_folder()
         network = campaign.chain.run("jointgen", path, folder / "network.h5")
-        recovered(campaign, name, campaign.chain.run("strength-averaging", network, folder / "joints.h5"))
+        recovered(campaign, "/".join(name.parts[:2]), str(name), campaign.chain.run("strength-averaging", network, folder / "joints.h5"))
     left = campaign.n - len(found)
     calls = recorded(campaign) if left > 0 else []
     campaign.random("calls").shuffle(calls)
@@ -102,9 +102,9 @@ def body(campaign):
         options = json.loads((folder / "options.json").read_text())
         tried = ended([campaign.programs / "demsolve", folder / "joints.h5", "-o", folder / "tried.h5", *options], LONGEST)
         if tried.code in (0, 3):  # the test wants the others to be refused
-            recovered(campaign, f"calls by tests/{folder.name}", folder / "joints.h5", options)
+            recovered(campaign, CALLS, folder.name, folder / "joints.h5", options)
         elif tried.code == HANGS:
-            campaign.count("calls by tests", "too long", folder.name)
+            campaign.count(CALLS, "too long", folder.name)
 
 
 if __name__ == "__main__":
