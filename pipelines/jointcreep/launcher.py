@@ -1,20 +1,28 @@
 #!/usr/bin/python3
 """jointcreep: the launcher; its package is where CMake says."""
 
-import pathlib
+import os
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-PACKAGE = HERE / "@PACKAGE_FOLDER@"
-sys.path[:0] = [str(PACKAGE), str(PACKAGE / "plots")]
 sys.dont_write_bytecode = True
+command = None
 
 try:
+    import pathlib
+
+    HERE = pathlib.Path(__file__).resolve().parent
+    PACKAGE = HERE / "@PACKAGE_FOLDER@"
+    sys.path[:0] = [str(PACKAGE), str(PACKAGE / "plots")]
+
     from jointcreep import command
-except (ImportError, MemoryError, SystemError) as error:  # Python loses some errors for lack of memory
-    if isinstance(error, ImportError) and "failed to map segment" not in str(error):
+except (ImportError, MemoryError, OSError, SystemError) as error:  # Python loses some errors for lack of memory
+    if isinstance(error, ImportError) and "failed to map segment" not in str(error) or \
+            isinstance(error, OSError) and error.errno != 12:  # ENOMEM; its module may not be loaded
         raise
-    sys.exit(print("jointcreep: out of memory", file=sys.stderr) or 5)
+
+if not command:  # here, where the exception is gone with what it held
+    os.write(2, b"jointcreep: out of memory\n")
+    os._exit(5)
 
 if __name__ == "__main__":
     sys.exit(command.main(sys.argv[1:], "@PROJECT_VERSION@", HERE))

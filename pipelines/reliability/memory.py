@@ -17,6 +17,7 @@ SCENES = ["tests/pipeline/kinds/scene.toml", "data/column/scene.toml", "data/ver
 FEW = 10  # limits; with fewer only the first scene is used
 SAFETY = "data/verification/toppling-columns/scene.toml"
 ENOUGH = 1000 * MB  # for a study
+MARGIN = 3 * MB  # from one start of Python to the next the least varies by some 1.5 MB; below, Python fails before the launcher runs
 
 
 def limited(command, size, **options):
@@ -60,7 +61,7 @@ def sweep(campaign, subject, program, source, name, *options):
 def study(campaign, job):
     """Sweeps a study. One that ends for lack of memory has to continue with enough."""
     job.undisturbed(campaign.chain.new_folder())
-    low = least(["/usr/bin/python3", "-c", ""], 0, ENOUGH, MB)
+    low = least(["/usr/bin/python3", "-c", ""], 0, ENOUGH, MB) + MARGIN
     for step in range(campaign.n):
         size, folder = low + (ENOUGH - low) * step // max(1, campaign.n - 1), campaign.chain.new_folder()
         job.fill(folder)
