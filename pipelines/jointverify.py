@@ -8,7 +8,8 @@ Reads a result file of demsolve (format 2.3 or later) and computes with formulas
 fulfil. It shares no code with the solver. It writes nothing but a table: a line for each check, with the largest
 deviation, what is allowed, and where it is.
 
-At large displacements, stresses and joint laws are not verified, and equilibrium only of all rock together. Lines "not
+At large displacements, elastic stresses are verified, and at rest equilibrium of gridpoints inside blocks and of every
+piece of rock between its contacts. Of the joint laws only the largest strength of all joints is verified. Lines "not
 verified" say what else is not.
 
 Creep of joints is verified where each creep step has a state: demsolve --states 1.
@@ -17,6 +18,9 @@ What is allowed:
   equilibrium    the run's tolerance of the unbalanced force ratio
   energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
   creep          1e-9 of the terms that are added
+  stresses at large displacements
+                 Hooke's, of 100 times the strain between the first two states, times the gradient of displacements:
+                 the equilibrium in situ is found again, and how far rock moves and turns for that is not in the file
   all others     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
 
 Options:
@@ -46,6 +50,8 @@ VERSION = "@PROJECT_VERSION@"  # CMake knows it
 MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
 BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
+NOT_IN_FILE = 100  # times the strain between the first two states: at large displacements the in-situ equilibrium is found again
+MOVING_FORCE = 2  # times the mean force, in which contacts count by their sum on a gridpoint
 ENERGY_OF_DYNAMICS = 0.01  # where the scene does not say
 ENERGY = 1e-8  # of other searches, with which only rounding is missing
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
@@ -201,7 +207,8 @@ class Scene:
         self.divisor = self.option("--strength-factor", 1.0)
         self.has_dashpots = "stiffness_damping_s" in equilibrium  # which the report's forces have, too
         self.large_displacements = "large_displacements" in self.tables
-        large = self.tables.get("large_displacements", {})
+        large = self.table("large_displacements", {})
+        self.rigid, self.new_contacts = large.get("rigid_rocks", []), large.get("new_contacts")
         self.stop, self.energy_tolerance = large.get("stop_s"), large.get("energy_tolerance", ENERGY_OF_DYNAMICS)
         creep = self.table("creep", {})
         self.creeps = "creep" in self.tables and "--no-creep" not in self.options
@@ -211,6 +218,15 @@ class Scene:
         self.rocks = {rock.get("name"): rock for rock in self.list("rock")}
         self.start = self.table("schedule").get("start", 0)
         self.boundaries = [self.boundary(table) for table in self.list("boundary")]
+
+    def friction_of_new_contacts(self):
+        """Of contacts that form at large displacements: the largest tangent of friction, and rows of {angle, roughness, wall strength}."""
+        of = next((one for one in self.list("joint_material") if one.get("name") == self.new_contacts), {})
+        angle = self.number(of, "friction_angle_deg", 0) * DEGREE
+        tangent = np.tan(max(angle, self.number(of, "initial_friction_angle_deg", 0) * DEGREE)) / self.divisor
+        if "joint_roughness_coefficient" not in of:
+            return tangent, np.zeros((0, 3))
+        return tangent, np.array([[angle, self.number(of, "joint_roughness_coefficient"), 1e6 * self.number(of, "joint_wall_strength_MPa")]])
 
     def table(self, name, default=None):
         value = self.tables.get(name, default)
@@ -338,6 +354,12 @@ def norm(vectors):
     return np.hypot(vectors[..., 0], vectors[..., 1])
 
 
+def in_matrices(components):
+    """Symmetric matrices of {xx, yy, xy}."""
+    xx, yy, xy = np.moveaxis(components, -1, 0)
+    return np.stack([np.stack([xx, xy], axis=-1), np.stack([xy, yy], axis=-1)], axis=-2)
+
+
 def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
@@ -352,6 +374,7 @@ class Section:
         rock_names = file.texts("/names/rock", "rock")
         file.texts("/names/stage", "stage")
         self.block_rock = index("/blocks/rock", "rock", "block")
+        self.rigid_block = np.isin(rock_names, scene.rigid)[self.block_rock]
         self.block_stage = index("/blocks/stage", "stage", "block", least=-1)
         self.block_area = number("/blocks/area", "block")
         self.zone = index("/mesh/zone_gridpoint", "gridpoint", "zone", 3)
@@ -437,6 +460,7 @@ class Section:
         self.roughness, self.wall = of_edges("roughness"), of_edges("wall_strength")
         self.largest_closure = of_edges("largest_closure")
         self.divisor = scene.divisor
+        self.tan_of_new, self.rough_of_new = scene.friction_of_new_contacts()
         self.units = {}
         for direction in ("normal", "shear"):
             kelvin = [number(f"/equivalent/{direction}_kelvin_{what}", "edge", "kelvin_unit")[self.edge]
@@ -453,6 +477,17 @@ class Section:
         self.size = float(norm(np.ptp(self.position, axis=0)))
 
     # Laws.
+
+    def stress_of(self, strain):
+        """Hooke's, of matrices [zone, 2, 2]."""
+        xx, yy, xy = strain[:, 0, 0], strain[:, 1, 1], strain[:, 0, 1]
+        return in_matrices(np.stack([self.c11 * xx + self.c12 * yy, self.c12 * xx + self.c11 * yy, 2 * self.c33 * xy], axis=1))
+
+    def strain_of(self, stress):
+        xx, yy, xy = stress[:, 0, 0], stress[:, 1, 1], (stress[:, 0, 1] + stress[:, 1, 0]) / 2
+        determinant = self.c11**2 - self.c12**2
+        return in_matrices(np.stack([(self.c11 * xx - self.c12 * yy) / determinant, (self.c11 * yy - self.c12 * xx) / determinant,
+                                     xy / (2 * self.c33)], axis=1))
 
     def is_barton_bandis(self):
         return self.law == BARTON_BANDIS
@@ -472,6 +507,20 @@ class Section:
         stiffest = self.k_n * (1 + self.wall / scale) ** 2
         on_curve = self.k_n * v / (1 - np.minimum(v, crushed) / self.largest_closure)
         return np.where(v < 0, self.k_n * v, np.where(v < crushed, on_curve, self.wall + stiffest * (v - crushed)))
+
+    def largest_strength(self, pressure):
+        """Largest mean shear traction that any joint of the section, or a new contact, can have under a mean pressure that may
+        vary along the contact."""
+        tangent = max([self.tan_of_new, *(np.max(each, initial=0) for each in (self.tan_phi, self.residual_tan_phi, self.initial_tan_phi))])
+        # Where bonds are in tension, the strength of a part may be 0, not below.
+        cohesion = np.max([np.max(self.cohesion, initial=0), np.max(self.strength_in_tension, initial=0) * tangent])
+        limit = cohesion + pressure * tangent
+        rough = np.unique(np.stack([self.residual_angle, self.roughness, self.wall], axis=1)[self.is_barton_bandis()], axis=0)
+        for residual, roughness, wall in np.vstack([rough, self.rough_of_new]):
+            steepest = np.minimum(np.maximum(70 * DEGREE, residual), residual + roughness * DEGREE * np.maximum(
+                0, np.log10(wall / np.maximum(pressure, 1e-300))))
+            limit = np.maximum(limit, pressure * np.tan(steepest) / self.divisor)
+        return limit
 
     def strength(self, normal, broken):
         """Largest shear traction under a normal traction. Of a continuously yielding joint that before it has slipped."""
@@ -520,6 +569,33 @@ class States:
         return self.point_stress[s].reshape(-1, 3, 3) if self.point_stress.shape[1] else self.stress[s][:, None]
 
 
+class MovingContacts:
+    """Contacts at the moments of dynamic analyses."""
+
+    def __init__(self, file):
+        blocks, first = file.array("/dynamics/contact_block", "i", "moving_contact", 2), file.array("/dynamics/first_contact", "i", "moment+1")
+        self.block, self.moment_of = blocks, file.index("/dynamics/state", "state", "moment")
+        self.normal = file.numbers("/dynamics/contact_normal", "moving_contact", 2)
+        self.traction = file.numbers("/dynamics/contact_traction", "moving_contact", 2)
+        ends = [file.numbers(f"/dynamics/contact_{end}", "moving_contact", 2) for end in ("from", "to")]
+        self.tangent = np.stack([self.normal[:, 1], -self.normal[:, 0]], axis=1)
+        self.middle = (ends[0] + ends[1]) / 2
+        self.length = np.abs(((ends[1] - ends[0]) * self.tangent).sum(axis=1))
+        if len(first) and (first[0] != 0 or (np.diff(first) < 0).any() or first[-1] != len(blocks)):
+            raise NotWanted(f"{file.path}: /dynamics/first_contact: expected rows from 0 to {len(blocks)}, not decreasing")
+        if blocks.size and (blocks.min() < -1 or blocks.max() >= file.size["block"]):
+            raise NotWanted(f"{file.path}: /dynamics/contact_block: expected numbers of blocks, or -1")
+        self.first = first
+
+    def of_state(self, s):
+        """The rows of a state's contacts; None if it is at no moment."""
+        moments = np.flatnonzero(self.moment_of == s)
+        return slice(*self.first[moments[-1]:moments[-1] + 2]) if len(moments) else None
+
+    def force_on_a(self, rows):
+        return self.length[rows, None] * (self.traction[rows, :1] * self.normal[rows] + self.traction[rows, 1:] * self.tangent[rows])
+
+
 class Verification:
     def __init__(self, path):
         self.file = File(path)
@@ -534,10 +610,12 @@ class Verification:
         self.equilibria["is_implicit"] = self.file.index("/equilibria/is_implicit", 2, "equilibrium")
         # The state of equilibrium in situ is at small displacements in any scene.
         self.unit_crept, self.all_steps_known = {}, True
+        self.without_stress = None  # edges of zones, at large displacements
         self.n_small = 1 if self.scene.large_displacements else len(self.states.time)
         # Moments of a dynamic analysis have no row of the history and are not at rest, but for its end.
         moments = self.file.index("/dynamics/state", "state", "moment") if self.file.has("/dynamics") else []
         self.moving = {int(s) for s in moments if not self.states.event[s]}
+        self.moving_contacts = MovingContacts(self.file) if self.file.has("/dynamics") else None
         # The last analysis may end when the scene asks for it: then it has no equilibrium.
         self.is_ended = self.scene.stop is not None and len(self.equilibria["time"]) <= sum(map(bool, self.states.event[moments]))
         self.moving |= set(range(int(moments[-1]), len(self.states.time))) if self.is_ended else set()
@@ -1101,8 +1179,107 @@ class Verification:
         chosen = np.flatnonzero(st.present[s])
         self.checks.see("displaced zones have an area, counter-clockwise", "m2", np.where(area > 0, 0, np.maximum(
             -area, 1e-300))[chosen], 0, self.in_state("/states/displacement", s, m.zone_centre, "zone", chosen))
-        if self.is_at_rest and s not in self.moving:  # the largest mean force so far counts, as the in-situ one
+        if not self.is_at_rest:
+            return
+        self.check_moving_stress(s)
+        if s not in self.moving:  # the largest mean force so far counts, as the in-situ one
             self.check_whole(s, (self.scene.tolerance + ROUNDING) * self.mean_in_situ * len(m.position))
+            self.check_pieces(s, area)
+
+    def check_moving_stress(self, s):
+        """Elastic zones: Biot's stress is Hooke's of Biot's strain U - 1, where R U takes edges without stress to the present ones.
+        Those without stress follow from edges and stress of the first state, but for a rotation, which changes nothing."""
+        m, st = self.section, self.states
+        if s == 1:
+            stress = in_matrices(st.stress[1])
+            stretch = np.broadcast_to(np.eye(2), stress.shape)
+            for _ in range(30):  # converges by the strain in each step
+                biot = np.linalg.det(stretch)[:, None, None] * stress @ np.linalg.inv(stretch)
+                stretch = np.eye(2) + m.strain_of(biot)
+            self.without_stress = np.linalg.inv(stretch) @ self.edges(1)
+            self.moved_before = NOT_IN_FILE * np.abs(m.strain_of(stress - in_matrices(st.stress[0]))[st.present[1]]).max(initial=0)
+        gradient = self.edges(s) @ np.linalg.inv(self.without_stress)
+        square, axes = np.linalg.eigh(gradient.transpose(0, 2, 1) @ gradient)
+        stretch = axes * np.sqrt(square)[:, None, :] @ axes.transpose(0, 2, 1)
+        rotation = gradient @ np.linalg.inv(stretch)
+        stress = rotation @ m.stress_of(stretch - np.eye(2)) @ stretch @ rotation.transpose(0, 2, 1) / \
+            np.linalg.det(gradient)[:, None, None]
+        chosen = st.present[s] & ~m.rigid_block[m.zone_block]
+        chosen[st.yielding] = False
+        chosen = np.flatnonzero(chosen)
+        if len(chosen):
+            off = np.abs(stress - in_matrices(st.stress[s]))[chosen].max(axis=(1, 2))
+            moved = np.abs(self.edges(s) @ np.linalg.inv(self.edges(1)) - np.eye(2)).max(axis=(1, 2))
+            allowed = m.c11 * (self.moved_before * moved + 2e-15 * m.reach * m.perimeter / m.area)
+            self.checks.see("displaced elastic zones: stress is Hooke's of the stretch", "Pa", off, allowed[chosen],
+                self.in_state("/states/stress", s, m.zone_centre, "zone", chosen, "/states/displacement"))
+
+    def edges(self, s):
+        """Two edges of each zone in a state, as columns."""
+        corner = (self.section.position + self.states.displacement[s])[self.section.zone]
+        return np.stack([corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]], axis=-1)
+
+    def check_pieces(self, s, area):
+        """Equilibrium in displaced positions: of gridpoints that no contact can reach, and of all rock that hangs together."""
+        m, st, see = self.section, self.states, self.checks.see
+        n, leader, there = len(m.position), self.leaders(s), st.present[s]
+        load, applied = self.loads(s)
+        force, magnitude = load + applied + st.reaction[s], norm(load) + norm(applied)
+        corner = (m.position + st.displacement[s])[m.zone[there]]
+        across = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+        xx, yy, xy = st.stress[s][there].T
+        for i in range(3):  # the corner's shape function has the slope of its opposite side, turned, over twice the area
+            bx, by = -across[:, i, 1] / 2, across[:, i, 0] / 2
+            of_zone = -np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1)
+            np.add.at(force, m.zone[there, i], of_zone)
+            np.add.at(magnitude, m.zone[there, i], norm(of_zone))
+        sums, carried = np.zeros((n, 2)), np.bincount(leader, magnitude, n)
+        np.add.at(sums, leader, force)
+        zone = leader[m.zone[there]]
+        sides = np.sort(np.concatenate([zone[:, [0, 1]], zone[:, [1, 2]], zone[:, [2, 0]]]), axis=1)
+        sides, count = np.unique(sides, axis=0, return_counts=True)
+        inside = np.zeros(n, bool)
+        inside[zone] = True
+        inside[sides[count == 1]] = False
+        rigid = m.rigid_block[m.zone_block[there]]
+        inside[zone[rigid]] = False
+        # On gridpoints of faces contacts carry what is missing.
+        mean = (carried + np.where(inside, 0, norm(sums)))[carried > 0].mean() if (carried > 0).any() else 0.0
+        allowed = MOVING_FORCE * self.scene.tolerance * mean
+        rounding = ROUNDING * carried + 1e-15 * self.stiffest_row(s) * m.reach
+        at = np.flatnonzero(inside)
+        see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at], allowed + rounding[at],
+            self.in_state("/states/stress", s, m.position, "gridpoint", at, "/states/displacement"))
+
+        rows = self.moving_contacts.of_state(s) if self.moving_contacts else None
+        if rows is None:
+            self.checks.leave_out("contacts of states at large displacements that are at no moment of a dynamic analysis")
+            return
+        piece = np.arange(n)  # the lowest gridpoint that it hangs together with
+        while True:
+            lowest = piece[sides].min(axis=1)
+            before = piece.copy()
+            np.minimum.at(piece, sides.ravel(), np.repeat(lowest, 2))
+            piece = piece[piece]
+            if (piece == before).all():
+                break
+        of_block = np.full(len(m.block_area), -1)
+        of_block[m.zone_block[there]] = piece[zone[:, 0]]
+        whole, parts = np.zeros((n, 2)), np.bincount(piece[leader], magnitude, n)
+        np.add.at(whole, piece[leader], force)
+        contacts, on_a = self.moving_contacts, self.moving_contacts.force_on_a(rows)
+        for side, sign in ((0, 1), (1, -1)):
+            block = contacts.block[rows, side]
+            if (of_block[block[block >= 0]] < 0).any():
+                raise NotWanted(f"{self.file.path}: /dynamics/contact_block: has a block that has been removed, {self.day(s)}")
+            np.add.at(whole, of_block[block[block >= 0]], sign * on_a[block >= 0])
+            np.add.at(parts, of_block[block[block >= 0]], norm(on_a[block >= 0]))
+        which = np.unique(piece[zone])
+        size = np.bincount(piece[np.unique(zone)], minlength=n)[which]
+        see("displaced pieces of rock are in equilibrium with their contacts", "N/m", norm(whole)[which], allowed * size +
+            ROUNDING * parts[which] + 1e-15 * self.stiffest_row(s) * m.reach * size,
+            lambda i: f"/dynamics/contact_traction by /states/reaction and weight: piece of rock at [{m.position[which[i], 0]:.6g}, "
+            f"{m.position[which[i], 1]:.6g}] m, {self.day(s)}")
 
     # Histories and reports.
 
@@ -1226,18 +1403,23 @@ class Verification:
                             np.abs(parts[0] - sum(parts[1:])), self.scene.energy_tolerance * largest,
                             lambda i, first=first: f"/dynamics/work_of_loads[{first + i}], day {time[first + i]:.6g}, "
                             f"{dynamic_time[first + i]:.3g} s")
-        n = file.array("/dynamics/first_contact", "i", "moment+1")
-        traction = file.numbers("/dynamics/contact_traction", "moving_contact", 2)
-        if len(n) and (n[0] != 0 or (np.diff(n) < 0).any() or n[-1] != len(traction)):
-            raise NotWanted(f"{file.path}: /dynamics/first_contact: expected rows from 0 to {len(traction)}, not decreasing")
+        c, m = self.moving_contacts, self.section
+        where = lambda dataset: lambda i: f"{dataset}[{i}]: between blocks {c.block[i, 0]} and {c.block[i, 1]} at " \
+            f"[{c.middle[i, 0]:.6g}, {c.middle[i, 1]:.6g}] m"
+        self.checks.see("normals of moving contacts are unit vectors", "", np.abs(norm(c.normal) - 1), ROUNDING,
+                        where("/dynamics/contact_normal"))
+        pressure = np.maximum(-c.traction[:, 0], 0)
+        limit = m.largest_strength(pressure)
+        self.checks.see("moving contacts carry no more shear than the strongest joint", "Pa", np.abs(c.traction[:, 1]) - limit,
+                        1e-9 * (limit + pressure), where("/dynamics/contact_traction"))
 
     def say_what_is_left_out(self):
         m, st, leave_out = self.section, self.states, self.checks.leave_out
         if not self.is_at_rest:
             leave_out("equilibrium, stresses and joint laws: the run found no equilibrium in situ")
         if self.n_small < len(st.time):
-            leave_out(f"equilibrium of gridpoints, stresses and joint laws of the {len(st.time) - self.n_small} states at large "
-                      "displacements")
+            leave_out(f"of {len(st.time) - self.n_small} states at large displacements: forces of contacts on single gridpoints, the "
+                      "joint law of each contact" + (", stress of zones that yield" if len(st.yielding) else ""))
         if (m.law == YIELDING).any():
             leave_out("strength of continuously yielding joints beyond its bounds: the file has no plastic displacement")
         if (m.law == WEARING).any():

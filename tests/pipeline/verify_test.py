@@ -112,6 +112,8 @@ class Verify(ChainTest):
             return run(text("data/verification/incline/scene.toml"))
         if name == "excavated boundary":
             return run(four_blocks(right=4.4))
+        if name == "displaced":
+            return run(four_blocks() + '\n[large_displacements]\nnew_contacts = "joint"\nrelease_s = 0.1\n')
         if name == "opening":
             return run(four_blocks())
         if name == "dilation":
@@ -139,7 +141,7 @@ class Verify(ChainTest):
         raise KeyError(name)
 
     RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds",
-               "collapse", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield",
+               "collapse", "displaced", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield",
                "rollers")
 
     def verified(self, path):
@@ -223,6 +225,13 @@ class Verify(ChainTest):
             ("removed zones have no stress", "slope", s + "stress", x(last(s, gone)), put(1.0)),
             ("open and removed contacts carry no traction", "slope", s + "traction", x(last(s, status(REMOVED))), put(1.0)),
             ("displaced zones have an area, counter-clockwise", "collapse", s + "displacement", y(last(s, here)), put(900.0)),
+            ("displaced elastic zones: stress is Hooke's of the stretch", "displaced", s + "stress", x(last(s, here)), times(1.001)),
+            ("displaced gridpoints without contacts are in equilibrium", "displaced", s + "stress", x(last(s, here)), times(1.1)),
+            ("displaced pieces of rock are in equilibrium with their contacts", "displaced", "/dynamics/contact_traction", at(-1, 0),
+             times(1.01)),
+            ("normals of moving contacts are unit vectors", "collapse", "/dynamics/contact_normal", at(-1, 0), more(1e-3)),
+            ("moving contacts carry no more shear than the strongest joint", "collapse", "/dynamics/contact_traction", at(-1, 1),
+             put(1e9)),
             ("stress of elastic zones is Hooke's", "slope", s + "stress", x(last(s, here)), times(1.0001)),
             ("stress of elastic zones is Hooke's", "slope", s + "displacement", at(-1, 40, 0), times(1.01)),
             ("stress of elastic zones is Hooke's", "creeping rock", s + "crept_strain", at(-1, 0, 0), times(1.01)),
