@@ -205,6 +205,8 @@ class Scene:
         equilibrium = self.table("equilibrium", {})
         self.tolerance = self.option("--tolerance", self.number(equilibrium, "tolerance", 1e-6))
         self.divisor = self.option("--strength-factor", 1.0)
+        self.increments = self.option("--increments", equilibrium.get("unloading_increments", 1)) != 1 or \
+            "increments_tolerance" in equilibrium or "--increments-tolerance" in self.options
         self.has_dashpots = "stiffness_damping_s" in equilibrium  # which the report's forces have, too
         self.large_displacements = "large_displacements" in self.tables
         large = self.table("large_displacements", {})
@@ -1351,6 +1353,7 @@ class Verification:
                         lambda i: f"/equilibria/work_of_loads[{chosen[i]}], day {e['time'][chosen[i]]:.6g}")
         if len(chosen) < len(size):
             self.checks.leave_out(f"energy of {len(size) - len(chosen)} creep steps at large displacements")
+        self.check_stored_energy()
         implicit = np.flatnonzero(e["is_implicit"])
         if len(implicit) and not np.any(self.section.law == YIELDING):  # slip of that law is against the traction where it shears back
             self.checks.see("report: dissipated energy is not negative, implicit engine", "J/m",
@@ -1367,15 +1370,41 @@ class Verification:
             ends[np.flatnonzero(time == day)[-np.count_nonzero(days == day):]] = False
         return ends
 
-    def stored_energy(self):
-        """Largest energy that zones and contacts have stored in a state."""
+    def stored_energies(self, s):
+        """Energy that zones and contacts have stored in a state, of each [J/m]; along the curve of Barton and Bandis it is less."""
         m, st = self.section, self.states
-        xx, yy, xy = np.moveaxis(st.stress, 2, 0)
-        determinant = m.c11**2 - m.c12**2
-        zones = m.area / 2 * ((m.c11 * (xx**2 + yy**2) - 2 * m.c12 * xx * yy) / determinant + xy**2 / m.c33)
-        shear = np.divide(st.traction[..., 1] ** 2, m.k_s, out=np.zeros_like(st.traction[..., 1]), where=m.k_s > 0)
-        contacts = m.length / 2 * (st.traction[..., 0] ** 2 / m.k_n + shear)
-        return (zones.sum(axis=1) + contacts.sum(axis=1)).max()
+        stress, c11, c12, c33 = st.stress_at_points(s), m.c11[:, None], m.c12[:, None], m.c33[:, None]
+        xx, yy, xy = np.moveaxis(stress, 2, 0)
+        density = ((c11 * (xx**2 + yy**2) - 2 * c12 * xx * yy) / (c11**2 - c12**2) + xy**2 / c33) / 2
+        normal, shear = st.traction[s].T
+        sheared = np.divide(shear**2, m.k_s, out=np.zeros_like(shear), where=m.k_s > 0)
+        return m.area * density.mean(axis=1), m.length / 2 * (normal**2 / m.k_n + sheared)
+
+    def stored_energy(self):
+        """Largest energy that all have stored in a state."""
+        return max(sum(part.sum() for part in self.stored_energies(s)) for s in range(len(self.states.time)))
+
+    def check_stored_energy(self):
+        """Of stages: what rock and joints that remain have stored after, less before."""
+        m, st, e = self.section, self.states, self.equilibria
+        stages = [s for s in range(1, self.n_small) if st.event[s] and st.time[s - 1] == st.time[s]]
+        if not stages or not self.is_at_rest:
+            return
+        if self.scene.increments or len(st.yielding) or self.section.is_barton_bandis().any():
+            self.checks.leave_out("stored energy of stages, that it is the states' (increments, rock that yields, or joints of Barton and "
+                                  "Bandis's law)")
+            return
+        for s in stages:
+            later = sum(1 for other in stages if other > s and st.time[other] == st.time[s])
+            rows = np.flatnonzero(e["time"] == st.time[s])
+            if later >= len(rows):
+                continue
+            row = rows[-1 - later]
+            present, touching = st.present[s], st.status[s] != REMOVED
+            after, before = ([zones[present].sum() + contacts[touching].sum()] for zones, contacts in map(self.stored_energies, (s, s - 1)))
+            self.checks.see("report: stored energy of a stage is that of its states", "J/m", abs(after[0] - before[0] - e["stored_energy"][row]),
+                            ROUNDING * (after[0] + before[0]), lambda _, row=row, s=s: f"/equilibria/stored_energy[{row}] by "
+                            f"/states/stress and /states/traction, {self.day(s)}")
 
     def check_dynamics(self):
         file, st = self.file, self.states

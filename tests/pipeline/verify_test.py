@@ -285,6 +285,8 @@ class Verify(ChainTest):
              put(1e-3)),
             ("report: work of loads is stored, dissipated or damped", "slope", "/equilibria/work_of_loads",
              lambda file: int(np.argmax(np.abs(file["/equilibria/work_of_loads"]))), times(1.01)),
+            ("report: stored energy of a stage is that of its states", "slope", "/equilibria/stored_energy",
+             lambda file: int(np.argmin(file["/equilibria/stored_energy"])), times(1.0001)),
             ("report: dissipated energy is not negative, implicit engine", "slope", "/equilibria/dissipated_energy", at(-1), put(-1)),
             ("moments of a dynamic analysis have their states", "collapse", "/dynamics/time", at(0), more(0.5)),
             ("dynamics: work of loads is kinetic, stored, lost or damped", "collapse", "/dynamics/work_of_loads", at(-1),
