@@ -560,7 +560,14 @@ def strength_factors(study):
     options = [*study.demsolve_options, *study.design.fine_options, *study.design.coarse_options]
     factors = [options[place + 1] for place, one in enumerate(options[:-1]) if one == "--strength-factor"] + \
         [one.partition("=")[2] for one in options if one.startswith("--strength-factor=")]
-    return list(dict.fromkeys(factors))
+    return [factor for factor in dict.fromkeys(factors) if not is_one(factor)]
+
+
+def is_one(text):
+    try:
+        return float(text) == 1
+    except ValueError:  # demsolve says it
+        return False
 
 
 def early_words(study, rows, why):

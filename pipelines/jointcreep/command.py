@@ -28,7 +28,7 @@ Options:
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
-  --window WINDOW           run, report: x0,y0,x1,y1 or four words, the part of the section in pictures of states and section-detail.png, in metres
+  --window WINDOW           run, report: x0,y0,x1,y1 or four words, the part of the section in pictures of states and the two details, in metres
                             fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
   --layer NAME              fit: layer of the file
   --property NAME           fit: a set for each value of this property, in CSV a column

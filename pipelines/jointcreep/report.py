@@ -204,7 +204,7 @@ def factor_of_safety(source, folder):
 
 def of_run(source, programs, folder, pairs=None, window=None):
     """Title and parts of the page of a result file. pairs: of points, as relative_displacements(). window: x0, y0, x1, y1 [m], a part of
-    the section for pictures of states; None: as section-detail.png has it."""
+    the section for pictures of states; None: as section-detail.png and blocks-detail.png have it."""
     import figure  # matplotlib takes long to load
     from suited import detail
     with h5py.File(source) as file:
@@ -226,7 +226,9 @@ def of_run(source, programs, folder, pairs=None, window=None):
     window = window or detail(scene)
     parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
     parts += [drawn("section", source, folder, "Its stages and points.", window=window)] if window else []
-    parts += [drawn("blocks", source, folder, "Blocks by size."), "<h2>Histories</h2>"]
+    parts += [drawn("blocks", source, folder, "Blocks by size.")]
+    parts += [drawn("blocks", source, folder, "Those around the excavation, with a scale of their own.", window=window)] if window else []
+    parts += ["<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
             parts.append(drawn("histories", source, folder, caption, component=component))

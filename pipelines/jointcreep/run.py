@@ -146,7 +146,8 @@ class Plan:
             if name in wanted:
                 yield self.picture(name, source, name.replace("_", "-"))
         if window:
-            yield self.picture("section", network, "section-detail", window=window)
+            for name in ("section", "blocks"):
+                yield self.picture(name, network, f"{name}-detail", window=window)
         for component in "xy" if "histories" in wanted else "":
             yield self.picture("histories", result, f"histories-{component}", component=component)
         if "line" in wanted:

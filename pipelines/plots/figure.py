@@ -335,20 +335,29 @@ def draw_rocks(scene, axes, names=None):
 BORDER = {"color": "0.4", "linewidth": 0.7, "linestyle": (0, (5, 3))}  # of what joint sets are generated in
 
 
+def is_on(outline, places):
+    """Which places are on an outline, to a thousandth of its size."""
+    corners = np.array(outline, float)
+    start, run = corners[:, None], (np.roll(corners, -1, axis=0) - corners)[:, None]
+    share = np.clip(((places - start) * run).sum(axis=2) / (run**2).sum(axis=2), 0, 1)
+    return np.linalg.norm(places - start - share[..., None] * run, axis=2).min(axis=0) < 1e-3 * np.ptp(corners, axis=0).max()
+
+
 def draw_region_borders(scene, axes):
-    """Borders of the regions that joint sets are generated in (region_m), each once: joints end there. Returns a legend entry, if the
-    axes show one."""
+    """Borders of the regions that joint sets are generated in (region_m), each once, where they are not on the outline: joints end there.
+    Returns a legend entry, if the axes show one."""
     regions = {tuple(map(tuple, one["region_m"])): one["name"] for one in reversed(scene.get("joint_set", [])) if "region_m" in one}
     inside, seen = matplotlib.patches.Polygon(scene["section"]["outline_m"], transform=axes.transData), False
     for corners in regions:
         closed = np.array([*corners, corners[0]], float)
-        (line,) = axes.plot(*closed.T, zorder=2.4, **BORDER)  # under the outline, which it may follow
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        places = np.concatenate([start + np.linspace(0, 1, 201)[:, None] * (end - start) for start, end in zip(closed, closed[1:])])
+        on_outline = is_on(scene["section"]["outline_m"], places)
+        drawn = np.where(on_outline[:, None], np.nan, places) if np.any(on_outline) else closed
+        (line,) = axes.plot(*drawn.T, zorder=2.4, **BORDER)
         line.set_clip_path(inside)
         line.set_in_layout(False)
-        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-        for start, end in zip(closed, closed[1:]):
-            places = start + np.linspace(0, 1, 50)[:, None] * (end - start)
-            seen |= bool(np.any(np.all((low < places) & (places < high), axis=1)))
+        seen |= bool(np.any(np.all((low < places) & (places < high), axis=1) & ~on_outline))
     return [matplotlib.lines.Line2D([], [], label="border of joint sets (region_m): no joints beyond", **BORDER)] if seen else []
 
 

@@ -128,6 +128,13 @@ class Plots(ChainTest):
             self.assertEqual(sum("region_m" in label for label in labels), count, labels)
             dashed = [line for line in axes.lines if line.get_color() == figure.BORDER["color"]]
             self.assertEqual([line.get_xydata().tolist() for line in dashed], [[*region, region[0]]])
+        # Not along the outline, where excavated rock leaves nothing that they could be seen on.
+        top = max(y for _, y in figure.scene_of(h5py.File(result))["section"]["outline_m"])
+        text = changed(text, "^region_m = .*", f"region_m = [[2, 2], [28, 2], [28, {top}], [2, {top}]]", 2)
+        axes = plots.draw("state", self.chain.result(text, "--no-creep"), field="contacts").axes[0]
+        (dashed,) = [line for line in axes.lines if line.get_color() == figure.BORDER["color"]]
+        self.assertLess(numpy.nanmax(dashed.get_ydata()), top)
+        self.assertLess(numpy.nanmin(dashed.get_ydata()), 3)
         axes = plots.draw("state", self.chain.result(self.chain.small(), "--no-creep"), field="contacts").axes[0]
         self.assertFalse([line for line in axes.lines if line.get_color() == figure.BORDER["color"]])
         figure.plt.close("all")

@@ -264,17 +264,18 @@ class Run(ChainTest):
         self.scene.write_text(self.chain.small())
         self.assertIn("section-detail.png", self.made("--window", "5,2.5,25,15", "--", "--no-creep"))
         result, network = self.out / "result.h5", self.out / "network.h5"
-        for name, file, options in (("last-stress", result, {"field": "stress"}), ("section-detail", network, {})):
+        for name, file, options in (("last-stress", result, {"field": "stress"}), ("section-detail", network, {}), ("blocks-detail", network, {})):
             plots.save(name.split("-", maxsplit=1)[0].replace("last", "state"), file, self.folder / "p.png", window=(5, 2.5, 25, 15), **options)
             self.assertEqual((self.folder / "p.png").read_bytes(), (self.out / f"{name}.png").read_bytes())
         report = (self.out / "report.html").read_text()
+        self.assertIn(base64.b64encode((self.out / "blocks-detail.png").read_bytes()).decode(), report)
         self.assertIn(base64.b64encode((self.out / "section-detail.png").read_bytes()).decode(), report)
         self.assertIn(base64.b64encode((self.out / "last-stress.png").read_bytes()).decode(), report)
         self.assertEqual(self.made("--window=5,2.5,25,15", "--", "--no-creep"), set())
         self.assertEqual(self.made("--window", "5", "2.5", "25", "15", "--", "--no-creep"), set())
-        drawn_in_it = {"section-detail.png", "last-displacement.png", "last-stress.png", "last-contacts.png", "report.html"}
+        drawn_in_it = {"section-detail.png", "blocks-detail.png", "last-displacement.png", "last-stress.png", "last-contacts.png", "report.html"}
         self.assertEqual(self.made("--window", "-5,-5,25,15", "--", "--no-creep"), drawn_in_it)
-        self.assertEqual(self.made("--", "--no-creep"), drawn_in_it - {"section-detail.png"})
+        self.assertEqual(self.made("--", "--no-creep"), drawn_in_it - {"section-detail.png", "blocks-detail.png"})
         self.assertFalse((self.out / "section-detail.png").exists())
         done = self.called("--window", "500,0,600,10", "--", "--no-creep")
         self.assertRegex(done.stderr, r"section-detail.png is not made: .*--window shows nothing of the section, which is from \[0, 0\] to ")

@@ -1682,10 +1682,10 @@ class Intervals(unittest.TestCase):
 
 class StrengthFactors(unittest.TestCase):
     def test_the_summary_names_what_strengths_are_divided_by(self):
-        design = types.SimpleNamespace(fine_options=[], coarse_options=["--strength-factor=1.2"])
+        design = types.SimpleNamespace(fine_options=["--strength-factor", "1.0"], coarse_options=["--strength-factor=1.2"])
         quantities = [types.SimpleNamespace(what="displacement")]
         study = types.SimpleNamespace(demsolve_options=["--strength-factor", "1.1", "--no-creep"], design=design, quantities=quantities)
-        self.assertEqual(answers.strength_factors(study), ["1.1", "1.2"])
+        self.assertEqual(answers.strength_factors(study), ["1.1", "1.2"])  # 1.0 changes nothing
         self.assertIn("divided by 1.1, 1.2 (--strength-factor)", answers.reduced_words(study)[0])
 
 
