@@ -25,7 +25,7 @@ from .study_file import BY_STOP_RULE, ENDS, EXTENSIBLE, NETWORK
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CORRELATION = "rank correlation"  # a measure in shares.csv
 ALL_PARAMETERS = "all parameters"  # an input in shares.csv
-NOT_LINEAR = "parameters, not linear or together"  # what no parameter explains alone
+NOT_LINEAR = "curvature and interaction of parameters"  # what no parameter explains alone
 SETS_EACH = 4  # sets of parameters for each parameter, so that their share is divided
 OF_STABLE, OR_NONE = ", of stable runs", " or no equilibrium"  # ends of names of probabilities
 FEWEST = 10  # values from which convergence is shown
@@ -429,7 +429,8 @@ def crossed_shares(study, rows, given, at):
     names = [NETWORK, ALL_PARAMETERS, f"{NETWORK} with parameters"]
     if divided:
         names += [study.parameters[column].name for column in numeric] + [NOT_LINEAR]
-    return [(name, "share of variance", float(share), float(of_low), float(of_high))
+    # A share is not negative, so those drawn of a share near 0 can all be larger than it.
+    return [(name, "share of variance", float(share), min(float(of_low), float(share)), max(float(of_high), float(share)))
             for name, share, of_low, of_high in zip(names, shares(*map(np.arange, table.shape)), low, high)]
 
 
@@ -513,6 +514,8 @@ def failure_place(row):
     when = f'stage "{stage}"' if stage else f"day {files.day_text(day)}" if day else "before the first stage"
     blocks = "block" if count == 1 else "blocks"
     what = f"moving {blocks}" if ending_of(row) == MOVING else f"{blocks} that moved most"
+    if not count:
+        return f"{when}: "
     return f"{when}, {count} {what}, {failure['area']:.4g} m2: "
 
 

@@ -19,7 +19,7 @@ from stage_names import plain
 BAND = "#c9d8ea"
 MOST_PANELS = 6
 BAND_POINTS = 60
-LABEL = 28  # characters in a line of a label
+LABEL = 22  # characters in a line of a label; more are longer than a panel of convergence() is high
 FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
 CLASSES = 5  # of a parameter, for the share of failed runs
 
@@ -123,11 +123,15 @@ def parameters(quantity, study, values, run, given, of_shares):
 
 
 def share_in_classes(axes, of_runs, failed):
-    """Share of failed runs in classes of a parameter that have about as many runs each."""
+    """Share of failed runs in classes of a parameter that have about as many runs each, with its interval."""
     edges = np.unique(np.quantile(of_runs, np.linspace(0, 1, CLASSES + 1)))
     place = np.clip(np.searchsorted(edges, of_runs, side="right") - 1, 0, max(0, len(edges) - 2))
-    shares = [100 * failed[place == one].mean() for one in range(len(edges) - 1)]
+    of_classes = [failed[place == one] for one in range(len(edges) - 1)]
+    shares = [100 * each.mean() for each in of_classes]
     axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
+    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes):
+        _, low, high = intervals.probability(int(each.sum()), len(each))
+        axes.plot([middle, middle], [100 * low, 100 * high], color=figure.COLORS[1], linewidth=1.0, marker="_", markersize=4)
     axes.set_ylim(bottom=0)
 
 
