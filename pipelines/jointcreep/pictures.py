@@ -112,7 +112,7 @@ def parameters(quantity, study, values, run, given, of_shares):
     for axes, column in zip(panels, numeric):
         of_runs = np.array([given[one]["given"][column] for one in run], float)
         if quantity.what == "failed":
-            share_in_classes(axes, of_runs, values)
+            share_in_classes(axes, of_runs, values, are_independent=study.design.kind != "networks x parameters")
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name)
@@ -122,14 +122,16 @@ def parameters(quantity, study, values, run, given, of_shares):
     return plot
 
 
-def share_in_classes(axes, of_runs, failed):
-    """Share of failed runs in classes of a parameter that have about as many runs each, with its interval."""
+def share_in_classes(axes, of_runs, failed, are_independent):
+    """Share of failed runs in classes of a parameter that have about as many runs each, with its interval if runs are independent."""
     edges = np.unique(np.quantile(of_runs, np.linspace(0, 1, CLASSES + 1)))
     place = np.clip(np.searchsorted(edges, of_runs, side="right") - 1, 0, max(0, len(edges) - 2))
     of_classes = [failed[place == one] for one in range(len(edges) - 1)]
     shares = [100 * each.mean() for each in of_classes]
     axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
-    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes):
+    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes if are_independent else []):
+        if not len(each):
+            continue
         _, low, high = intervals.probability(int(each.sum()), len(each))
         axes.plot([middle, middle], [100 * low, 100 * high], color=figure.COLORS[1], linewidth=1.0, marker="_", markersize=4)
     axes.set_ylim(bottom=0)
