@@ -200,7 +200,7 @@ class Run(ChainTest):
         labels = [text.get_text() for text in axes.get_legend().get_texts()]
         self.assertIn("excavated then: bench", labels)
         longest = f"{1e3 * np.linalg.norm(failure['/failure/motion']):.3g} mm in 5000 steps of the solver"
-        self.assertIn(f"1 moving block (red arrows, on a scale of their own; the longest is {longest})", labels)
+        self.assertIn(f"1 moving block (red arrows, on a scale of their own; the longest, a block's mean, is {longest})", labels)
         plots.figure.plt.close(picture)
 
         # The moving block is enlarged; where all blocks move the picture says so.
