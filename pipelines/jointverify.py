@@ -366,6 +366,28 @@ def cross(a, b):
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def inverse(matrices):
+    """Of 2 x 2 matrices; without an exception where there is none, as of zones that a wrong file makes flat."""
+    (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    adjugate = np.stack([np.stack([d, -b], axis=-1), np.stack([-c, a], axis=-1)], axis=-2)
+    return adjugate / (a * d - b * c)[..., None, None]
+
+
+def polar(gradient):
+    """Rotation and stretch of displacement gradients."""
+    turn = np.stack([gradient[:, 0, 0] + gradient[:, 1, 1], gradient[:, 1, 0] - gradient[:, 0, 1]], axis=1)
+    cos, sin = (turn / norm(turn)[:, None]).T
+    rotation = np.stack([np.stack([cos, -sin], axis=-1), np.stack([sin, cos], axis=-1)], axis=-2)
+    return rotation, rotation.transpose(0, 2, 1) @ gradient
+
+
+def linear_shapes(corner):
+    """Areas of zones with these corners [zone, 3, 2], and slopes of the shape functions of their corners [zone, corner, 2]."""
+    opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # the side across from each corner
+    area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
+    return area, np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1) / (2 * area)[:, None, None]
+
+
 class Section:
     """Mesh, rocks and joints."""
 
@@ -400,9 +422,7 @@ class Section:
             raise NotWanted(f"{file.path}: /mesh/zone_gridpoint: has no zones")
 
         corner = self.position[self.zone]
-        self.area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
-        opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # the side across from each corner
-        of_corners = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1) / (2 * self.area)[:, None, None]
+        self.area, of_corners = linear_shapes(corner)
         # Of each stress point the slopes of the shape functions, [zone, point, gridpoint, 2], and of a zone their mean.
         middle = index("/mesh/zone_middle", "gridpoint", "quadratic_zone", 3)
         self.side_middle = index("/mesh/side_middle", "gridpoint", "quadratic_side")
@@ -419,7 +439,7 @@ class Section:
                 4 * (share[None, :, :, None] * of_corners[:, None, after] + share[None, :, after, None] * of_corners[:, None])],
                 axis=2)
         self.gradient = self.slopes.mean(axis=1)
-        self.perimeter = norm(opposite).sum(axis=1)
+        self.perimeter = norm(np.roll(corner, -1, axis=1) - corner).sum(axis=1)
         self.zone_centre = corner.mean(axis=1)
         self.has_zones = np.zeros(len(self.position), bool)
         self.has_zones[self.node] = True
@@ -612,7 +632,6 @@ class Verification:
         self.equilibria["is_implicit"] = self.file.index("/equilibria/is_implicit", 2, "equilibrium")
         # The state of equilibrium in situ is at small displacements in any scene.
         self.unit_crept, self.all_steps_known = {}, True
-        self.without_stress = None  # edges of zones, at large displacements
         self.n_small = 1 if self.scene.large_displacements else len(self.states.time)
         # Moments of a dynamic analysis have no row of the history and are not at rest, but for its end.
         moments = self.file.index("/dynamics/state", "state", "moment") if self.file.has("/dynamics") else []
@@ -1093,6 +1112,16 @@ class Verification:
                 np.add.at(applied, m.side_middle[on], whole * 4 / 6)
         return load, applied
 
+    def zone_forces(self, s, slopes, area):
+        """Gridpoints and the forces that present zones exert on them, for each stress point and gridpoint of a zone."""
+        m, st = self.section, self.states
+        there, points = st.present[s], slopes.shape[1]
+        for point in range(points):
+            xx, yy, xy = st.stress_at_points(s)[there, point].T
+            for i in range(m.node.shape[1]):
+                bx, by = slopes[there, point, i].T
+                yield m.node[there, i], -area[there, None] / points * np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1)
+
     def check_whole(self, s, allowed):
         """The balance of all rock."""
         load, applied = self.loads(s)
@@ -1112,13 +1141,8 @@ class Verification:
         load, applied = self.loads(s)
         force += load + applied
         magnitude += norm(load) + norm(applied)
-        points = m.slopes.shape[1]
-        for point in range(points):
-            xx, yy, xy = st.stress_at_points(s)[there, point].T
-            for i in range(m.node.shape[1]):
-                bx, by = m.slopes[there, point, i].T
-                add(m.node[there, i],
-                    -m.area[there, None] / points * np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1))
+        for gridpoints, forces in self.zone_forces(s, m.slopes, m.area):
+            add(gridpoints, forces)
         on_a = m.length[:, None] * (st.traction[s][:, :1] * m.normal + st.traction[s][:, 1:] * m.tangent)
         add(m.contact[:, 0], on_a)
         add(m.contact[:, 1], -on_a)
@@ -1177,33 +1201,31 @@ class Verification:
         """What holds at large displacements."""
         m, st = self.section, self.states
         corner = (m.position + st.displacement[s])[m.zone]
-        area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
+        area, slopes = linear_shapes(corner)
         chosen = np.flatnonzero(st.present[s])
         self.checks.see("displaced zones have an area, counter-clockwise", "m2", np.where(area > 0, 0, np.maximum(
             -area, 1e-300))[chosen], 0, self.in_state("/states/displacement", s, m.zone_centre, "zone", chosen))
         if not self.is_at_rest:
             return
-        self.check_moving_stress(s)
+        self.check_moving_stress(s, np.stack([corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]], axis=-1))
         if s not in self.moving:  # the largest mean force so far counts, as the in-situ one
             self.check_whole(s, (self.scene.tolerance + ROUNDING) * self.mean_in_situ * len(m.position))
-            self.check_pieces(s, area)
+            self.check_pieces(s, slopes[:, None], area)
 
-    def check_moving_stress(self, s):
-        """Elastic zones: Biot's stress is Hooke's of Biot's strain U - 1, where R U takes edges without stress to the present ones.
-        Those without stress follow from edges and stress of the first state, but for a rotation, which changes nothing."""
+    def check_moving_stress(self, s, edges):
+        """Elastic zones: Biot's stress is Hooke's of Biot's strain U - 1, where R U takes edges without stress to the present ones
+        (two of each zone, as columns). Those without stress follow from the first state, but for a rotation, which changes nothing."""
         m, st = self.section, self.states
         if s == 1:
             stress = in_matrices(st.stress[1])
             stretch = np.broadcast_to(np.eye(2), stress.shape)
             for _ in range(30):  # converges by the strain in each step
-                biot = np.linalg.det(stretch)[:, None, None] * stress @ np.linalg.inv(stretch)
+                biot = np.linalg.det(stretch)[:, None, None] * stress @ inverse(stretch)
                 stretch = np.eye(2) + m.strain_of(biot)
-            self.without_stress = np.linalg.inv(stretch) @ self.edges(1)
+            self.to_no_stress, self.to_first = inverse(inverse(stretch) @ edges), inverse(edges)
             self.moved_before = NOT_IN_FILE * np.abs(m.strain_of(stress - in_matrices(st.stress[0]))[st.present[1]]).max(initial=0)
-        gradient = self.edges(s) @ np.linalg.inv(self.without_stress)
-        square, axes = np.linalg.eigh(gradient.transpose(0, 2, 1) @ gradient)
-        stretch = axes * np.sqrt(square)[:, None, :] @ axes.transpose(0, 2, 1)
-        rotation = gradient @ np.linalg.inv(stretch)
+        gradient = edges @ self.to_no_stress
+        rotation, stretch = polar(gradient)
         stress = rotation @ m.stress_of(stretch - np.eye(2)) @ stretch @ rotation.transpose(0, 2, 1) / \
             np.linalg.det(gradient)[:, None, None]
         chosen = st.present[s] & ~m.rigid_block[m.zone_block]
@@ -1211,30 +1233,21 @@ class Verification:
         chosen = np.flatnonzero(chosen)
         if len(chosen):
             off = np.abs(stress - in_matrices(st.stress[s]))[chosen].max(axis=(1, 2))
-            moved = np.abs(self.edges(s) @ np.linalg.inv(self.edges(1)) - np.eye(2)).max(axis=(1, 2))
+            moved = np.abs(edges @ self.to_first - np.eye(2)).max(axis=(1, 2))
             allowed = m.c11 * (self.moved_before * moved + 2e-15 * m.reach * m.perimeter / m.area)
             self.checks.see("displaced elastic zones: stress is Hooke's of the stretch", "Pa", off, allowed[chosen],
                 self.in_state("/states/stress", s, m.zone_centre, "zone", chosen, "/states/displacement"))
 
-    def edges(self, s):
-        """Two edges of each zone in a state, as columns."""
-        corner = (self.section.position + self.states.displacement[s])[self.section.zone]
-        return np.stack([corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]], axis=-1)
-
-    def check_pieces(self, s, area):
-        """Equilibrium in displaced positions: of gridpoints that no contact can reach, and of all rock that hangs together."""
+    def check_pieces(self, s, slopes, area):
+        """Equilibrium in displaced positions: of gridpoints that no contact can reach, and of all rock that hangs together. slopes and
+        area: those of displaced zones."""
         m, st, see = self.section, self.states, self.checks.see
         n, leader, there = len(m.position), self.leaders(s), st.present[s]
         load, applied = self.loads(s)
         force, magnitude = load + applied + st.reaction[s], norm(load) + norm(applied)
-        corner = (m.position + st.displacement[s])[m.zone[there]]
-        across = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
-        xx, yy, xy = st.stress[s][there].T
-        for i in range(3):  # the corner's shape function has the slope of its opposite side, turned, over twice the area
-            bx, by = -across[:, i, 1] / 2, across[:, i, 0] / 2
-            of_zone = -np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1)
-            np.add.at(force, m.zone[there, i], of_zone)
-            np.add.at(magnitude, m.zone[there, i], norm(of_zone))
+        for gridpoints, forces in self.zone_forces(s, slopes, area):
+            np.add.at(force, gridpoints, forces)
+            np.add.at(magnitude, gridpoints, norm(forces))
         sums, carried = np.zeros((n, 2)), np.bincount(leader, magnitude, n)
         np.add.at(sums, leader, force)
         zone = leader[m.zone[there]]
@@ -1248,7 +1261,8 @@ class Verification:
         # On gridpoints of faces contacts carry what is missing.
         mean = (carried + np.where(inside, 0, norm(sums)))[carried > 0].mean() if (carried > 0).any() else 0.0
         allowed = MOVING_FORCE * self.scene.tolerance * mean
-        rounding = ROUNDING * carried + 1e-15 * self.stiffest_row(s) * m.reach
+        of_place = 1e-15 * self.stiffest_row(s) * m.reach  # force by rounding of positions
+        rounding = ROUNDING * carried + of_place
         at = np.flatnonzero(inside)
         see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at], allowed + rounding[at],
             self.in_state("/states/stress", s, m.position, "gridpoint", at, "/states/displacement"))
@@ -1279,7 +1293,7 @@ class Verification:
         which = np.unique(piece[zone])
         size = np.bincount(piece[np.unique(zone)], minlength=n)[which]
         see("displaced pieces of rock are in equilibrium with their contacts", "N/m", norm(whole)[which], allowed * size +
-            ROUNDING * parts[which] + 1e-15 * self.stiffest_row(s) * m.reach * size,
+            ROUNDING * parts[which] + of_place * size,
             lambda i: f"/dynamics/contact_traction by /states/reaction and weight: piece of rock at [{m.position[which[i], 0]:.6g}, "
             f"{m.position[which[i], 1]:.6g}] m, {self.day(s)}")
 
@@ -1373,12 +1387,11 @@ class Verification:
     def stored_energies(self, s):
         """Energy that zones and contacts have stored in a state, of each [J/m]; along the curve of Barton and Bandis it is less."""
         m, st = self.section, self.states
-        stress, c11, c12, c33 = st.stress_at_points(s), m.c11[:, None], m.c12[:, None], m.c33[:, None]
-        xx, yy, xy = np.moveaxis(stress, 2, 0)
-        density = ((c11 * (xx**2 + yy**2) - 2 * c12 * xx * yy) / (c11**2 - c12**2) + xy**2 / c33) / 2
+        points = [in_matrices(stress) for stress in np.moveaxis(st.stress_at_points(s), 1, 0)]
+        density = sum((stress * m.strain_of(stress)).sum(axis=(1, 2)) for stress in points) / (2 * len(points))
         normal, shear = st.traction[s].T
         sheared = np.divide(shear**2, m.k_s, out=np.zeros_like(shear), where=m.k_s > 0)
-        return m.area * density.mean(axis=1), m.length / 2 * (normal**2 / m.k_n + sheared)
+        return m.area * density, m.length / 2 * (normal**2 / m.k_n + sheared)
 
     def stored_energy(self):
         """Largest energy that all have stored in a state."""
@@ -1401,9 +1414,9 @@ class Verification:
                 continue
             row = rows[-1 - later]
             present, touching = st.present[s], st.status[s] != REMOVED
-            after, before = ([zones[present].sum() + contacts[touching].sum()] for zones, contacts in map(self.stored_energies, (s, s - 1)))
-            self.checks.see("report: stored energy of a stage is that of its states", "J/m", abs(after[0] - before[0] - e["stored_energy"][row]),
-                            ROUNDING * (after[0] + before[0]), lambda _, row=row, s=s: f"/equilibria/stored_energy[{row}] by "
+            after, before = (zones[present].sum() + contacts[touching].sum() for zones, contacts in map(self.stored_energies, (s, s - 1)))
+            self.checks.see("report: stored energy of a stage is that of its states", "J/m", abs(after - before - e["stored_energy"][row]),
+                            ROUNDING * (after + before), lambda _, row=row, s=s: f"/equilibria/stored_energy[{row}] by "
                             f"/states/stress and /states/traction, {self.day(s)}")
 
     def check_dynamics(self):

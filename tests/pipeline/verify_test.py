@@ -315,6 +315,19 @@ class Verify(ChainTest):
             shown |= set(self.of_result(name)[1])
         self.assertEqual(shown - found, set(), "checks that no wrong value is tried on")
 
+    def test_displaced_zones_without_a_shape(self):
+        """Displacements that are no numbers, or make zones flat, fail checks in any state at large displacements."""
+        for state in (1, -1):
+            for wrong in (np.nan, 0.0):
+                copy = self.chain.new_folder() / "copy.h5"
+                shutil.copyfile(self.result("displaced"), copy)
+                with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                    place = file["/mesh/gridpoint_position"][:]
+                    file["/states/displacement"][state] = -place + wrong  # all in one point
+                code, checks, said = self.verified(copy)
+                self.assertEqual(code, 3, said)
+                self.assertEqual(checks["displaced zones have an area, counter-clockwise"][0], "FAILED", said)
+
     def test_slip_by_rounding_in_situ(self):
         """The solver may find a contact at its strength by a last digit beyond it."""
         copy = self.chain.new_folder() / "copy.h5"
