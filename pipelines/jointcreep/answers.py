@@ -512,10 +512,10 @@ def failure_place(row):
         return ""
     stage, day, count = failure["stage"], failure["day"], failure["blocks"]
     when = f'stage "{stage}"' if stage else f"day {files.day_text(day)}" if day else "before the first stage"
-    blocks = "block" if count == 1 else "blocks"
-    what = f"moving {blocks}" if ending_of(row) == MOVING else f"{blocks} that moved most"
     if not count:
         return f"{when}: "
+    blocks = "block" if count == 1 else "blocks"
+    what = f"moving {blocks}" if ending_of(row) == MOVING else f"{blocks} that moved most"
     return f"{when}, {count} {what}, {failure['area']:.4g} m2: "
 
 

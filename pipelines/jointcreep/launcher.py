@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """jointcreep: the launcher; its package is where CMake says."""
 
+import errno
 import os
 import sys
 
@@ -17,7 +18,7 @@ try:
     from jointcreep import command
 except (ImportError, MemoryError, OSError, SystemError) as error:  # Python loses some errors for lack of memory
     if isinstance(error, ImportError) and "failed to map segment" not in str(error) or \
-            isinstance(error, OSError) and error.errno != 12:  # ENOMEM; its module may not be loaded
+            isinstance(error, OSError) and error.errno != errno.ENOMEM:
         raise
 
 if not command:  # here, where the exception is gone with what it held

@@ -1,8 +1,8 @@
 """Stops every run halfway and recovers it, and restarts every run from its last checkpoint: MOOSE's two habits.
 
 Scenes are all those of data and of tests/pipeline, and those that the tests write: the tests of whole programs run with a
-demsolve that keeps its input and options. N is how many, at most; `--only calls` leaves the scenes of files out. Checkpoints are written every EVERY minutes. The bytes have to be
-those of a run without checkpoints that was not stopped.
+demsolve that keeps its input and options; with --only-calls they are all. N is how many, at most. Checkpoints are written every
+EVERY minutes. The bytes have to be those of a run without checkpoints that was not stopped.
 """
 
 import json
@@ -89,14 +89,14 @@ def recovered(campaign, group, name, joints, options=()):
 
 
 def body(campaign):
-    found = scenes() if campaign.options.only != "calls" else []
+    found = [] if campaign.options.only_calls else scenes()
     for path in found[:campaign.n]:
         name = path.relative_to(ROOT)
         folder = campaign.chain.new_folder()
         network = campaign.chain.run("jointgen", path, folder / "network.h5")
         recovered(campaign, "/".join(name.parts[:2]), str(name), campaign.chain.run("strength-averaging", network, folder / "joints.h5"))
     left = campaign.n - len(found)
-    calls = recorded(campaign) if left > 0 and campaign.options.only != "scenes" else []
+    calls = recorded(campaign) if left > 0 else []
     campaign.random("calls").shuffle(calls)
     for folder in calls[:max(left, 0)]:
         options = json.loads((folder / "options.json").read_text())
@@ -108,7 +108,7 @@ def body(campaign):
 
 
 def options(parser):
-    parser.add_argument("--only", choices=["scenes", "calls"])
+    parser.add_argument("--only-calls", action="store_true", help="scenes of files are left out")
 
 
 if __name__ == "__main__":
