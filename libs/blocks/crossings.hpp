@@ -9,7 +9,7 @@
 namespace jointcreep::blocks
 {
 
-// The smallest box around an outline.
+// The bounding box of an outline.
 Box box_of(const Polygon& outline);
 
 // More are refused: they take five minutes and 22 GB (page docs/cutting.md), ten times as many do not fit the

@@ -2,8 +2,9 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The smallest blocks have the first colour of the scale: those that have 1 percent of the area in all. Rock outside the regions of
-joint sets (region_m) is grey. With a window, the scale has the sizes of the blocks inside the window. Larger blocks are grey.
+The colour scale of the size is logarithmic. Its first colour is for the smallest blocks, which together are 1 percent of the area.
+Rock outside the regions of joint sets (region_m) is grey. With a window, the scale is for the blocks inside the window. Larger
+blocks are grey.
 """
 
 import matplotlib.colors
