@@ -14,6 +14,7 @@ import unittest
 
 import h5py
 import jsonschema
+import numpy as np
 
 from chain import ChainTest, main
 
@@ -331,6 +332,49 @@ class Documentation(ChainTest):
             path = self.chain.new_folder() / f"{number}.toml"
             path.write_text(scene)
             self.output_of("jointgen", path, "--check")
+
+    def test_scene_keys_on_pages(self):
+        """Parts of scenes on pages have keys of the schema, and each key with a unit that a page names exists."""
+        schema = json.loads(self.output_of("jointgen", "--scene-schema"))
+        known = set(re.findall(r'"(\w+)": ?\{', json.dumps(schema)))
+        validator = jsonschema.Draft7Validator(schema)
+        units = re.compile(r"`(\w+_(?:deg|m|m2|MPa|GPa|per_m|days|kg_per_m3|MPa_per_m|MPa_day_per_m|GPa_per_m|m_per_s2))(?: = [^`]*)?`")
+        found = 0
+        for name in "slope", "cavern", "joint-data", "values", "section", "no-equilibrium", "factor-of-safety", "studies":
+            page = self.chain.text(f"docs/{name}.md")
+            self.assertEqual({key for key in units.findall(page) if key not in known}, set(), name)
+            for part in code_blocks(page, "toml"):
+                for table, ones in tomllib.loads(part).items():
+                    if table not in schema["$defs"]:  # of a study file
+                        self.assertIn(table, ("title", "scene", "vary", "design", "collect", "stop"), name)
+                        continue
+                    for one in ones if isinstance(ones, list) else [ones]:
+                        rules = {**schema["$defs"][table], "required": [], "$defs": schema["$defs"]}
+                        errors = validator.evolve(schema=rules).iter_errors(json.loads(json.dumps(one, default=str)))
+                        self.assertEqual([error.message for error in errors], [], f"{name}: {table}")
+                        found += 1
+        self.assertGreaterEqual(found, 9)
+
+    def test_bolted_cavern(self):
+        """The keys of the page on bolts, in the scene of the cavern: joints without bridges are stronger in the region, and only there."""
+        (keys,) = code_blocks(self.chain.text("docs/no-equilibrium.md"), "toml")
+        tables, of_set = keys.split("[[joint_set]]\n")
+        of_set = next(line for line in of_set.splitlines() if line.startswith("material_in"))
+        scene = self.chain.text("data/cavern/scene.toml")
+        creep = [line for line in scene.splitlines() if "_kelvin_" in line]
+        tables = tables.replace("tensile_strength_MPa = 0.09\n", "\n".join(["tensile_strength_MPa = 0.09", *creep, ""]))
+        scene = re.sub(r"^\[\[joint_set\]\]$", f"[[joint_set]]\n{of_set}", scene, flags=re.MULTILINE)
+        result = self.chain.result(scene + "\n" + tables, "--no-creep")
+        with h5py.File(result) as file:
+            traced = (file["/edges/kind"][:] == 1) & (file["/edges/joint_fraction"][:] == 1)
+            middle = np.abs(file["/vertices/position"][:][file["/edges/vertex"][:]].mean(axis=1) - [0, 4])  # of the region's middle
+            inside = traced & (middle < [13.9, 15.9]).all(axis=1)
+            outside = traced & (middle > [14.1, 16.1]).any(axis=1)
+            strength = file["/equivalent/tensile_strength"][:], file["/equivalent/cohesion"][:]
+        self.assertGreater(min(inside.sum(), outside.sum()), 20)
+        for edges, wanted in (inside, (0.09e6, 0.165e6)), (outside, (0, 0.1e6)):
+            for found, value in zip(strength, wanted):
+                np.testing.assert_allclose(found[edges], value)
 
     def test_file_format_example(self):
         (example,) = code_blocks(self.chain.text("docs/file-format.md"), "python")
