@@ -22,8 +22,8 @@ def openturns():
         import openturns
     except ImportError as error:
         raise NotWanted(f"Python's module openturns cannot be loaded ({error}). It draws [[vary]] with a law, and the designs sobol sequence and "
-                        "sobol indices; [[vary]] with a list of values does not need it. First run: apt install python3-openturns "
-                        "(in the sources: sh pipelines/setup.sh studies)") from None
+                        "sobol indices. First run: apt install python3-openturns (in the sources: sh pipelines/setup.sh studies). Without it "
+                        "give [[vary]] values in place of a law: 100 quantiles of the law, at the probabilities 0.005, 0.015, ... 0.995") from None
     openturns.Log.Show(openturns.Log.NONE)
     return openturns
 

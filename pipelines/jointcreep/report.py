@@ -389,7 +389,7 @@ def of_study(out, programs, folder):
     pictures = plan.parsed((out / "pictures.json").read_bytes(), out / "pictures.json")
     for quantity in study.quantities:
         of = [row for row in found_answers if row["quantity"] == quantity.label()]
-        parts.append(f"<h3>{escaped(quantity.title())}</h3>")
+        parts += [f"<h3>{escaped(quantity.title())}</h3>", f"<p>{escaped(quantity.definition())}</p>"]
         if not of:
             parts.append("<p>No run has this value.</p>")
             continue

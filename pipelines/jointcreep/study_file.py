@@ -82,6 +82,22 @@ class Quantity:
         """Label and unit."""
         return self.label() if self.unit == "1" else f"{self.label()} ({self.unit})"
 
+    def definition(self):
+        """What it is, in a sentence."""
+        if self.what == "failed":
+            return "1 if blocks move and there is no equilibrium, 0 if there is one; runs that end undecided have no value."
+        if self.what == "factor of safety":
+            has = "an" if self.statistic == ENDS[0] else "no"
+            return f"Strength reduction factor at the {self.statistic} of the bracket, with which there is {has} equilibrium."
+        if self.what == "blocks":
+            return f"{self.statistic.capitalize()} of all blocks before the first stage."
+        component = {"x": "to the right (x)", "y": "upward (y)", "length": "as the length of the vector"}[self.component]
+        other = f' relative to "{self.relative_to}"' * bool(self.relative_to)
+        time = f'just after stage "{self.stage}"' if self.stage else "at the end" if self.date is None else \
+            f"on day {self.date:g}" if isinstance(self.date, (int, float)) else f"on {self.date}"
+        since = "the in-situ equilibrium" if self.since == "in situ" else f'the first reading of "{self.point}"'
+        return f'Displacement of "{self.point}"{other} {component}, {time}, since {since}.'
+
 
 @dataclasses.dataclass
 class Design:
@@ -221,9 +237,9 @@ class Table:
     def flag(self, key, default=None):
         return self.get(key, default, lambda value: isinstance(value, bool), "true or false")
 
-    def several(self, key, default, fits, expected):
-        """A list of at least one."""
-        return self.get(key, default, lambda value: isinstance(value, list) and bool(value) and all(map(fits, value)), expected)
+    def several(self, key, default, fits, expected, least=1):
+        """A list of so many or more."""
+        return self.get(key, default, lambda value: isinstance(value, list) and len(value) >= least and all(map(fits, value)), expected)
 
     def end(self):
         for key in self.left:
@@ -288,7 +304,7 @@ def read(path):
 
 def demsolve_options_of(table, key):
     """Options of demsolve that a table gives under a key."""
-    options = table.several(key, [], lambda one: isinstance(one, str) and one.isprintable(), 'a list of options, such as ["--no-creep"]')
+    options = table.several(key, [], lambda one: isinstance(one, str) and one.isprintable(), 'a list of options, such as ["--no-creep"]', 0)
     for option in options:
         if option.split("=")[0] in ("-o", "--output", "--checkpoint", "--factor-of-safety", "-h", "--help", "--version"):
             table.wrong(key, f"options without {option}")

@@ -289,7 +289,8 @@ def draw_contacts(file, state, section, axes):
     slipped = (status == STUCK) & (slip > SLIPPED * slip.max(initial=0))
     seen = section.is_seen(figure.array(file, "/mesh/contact_centre"))
     entries = []
-    extended = figure.untraced_edges(file)[figure.array(file, "/mesh/contact_edge")]  # of contacts
+    no_joint = figure.untraced_edges(file) | (figure.array(file, "/edges/kind") == figure.WELDED)
+    extended = no_joint[figure.array(file, "/mesh/contact_edge")]  # of contacts
     for chosen, label, look in (((status == STUCK) & ~slipped & ~extended, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
                                 ((status == STUCK) & ~slipped & extended, "sticking, in rock (no joint trace)",
                                  {"color": "0.78", "linewidth": 0.5, "linestyle": (0, (2, 2))}),
@@ -343,6 +344,16 @@ def length_text(metres):
 def with_short_lengths(reason):
     """Why a run ended, with lengths as the legends have them. Places, "[x, y] m", stay."""
     return re.sub(r"(?<!\S)(\d+\.?\d*(?:e[+-]\d+)?) m\b", lambda found: length_text(float(found[1])), reason)
+
+
+def reason_in_short(file):
+    """Why a run ended, for a title. The legend has moving blocks, which need no reason, and the largest unbalanced force of a run that
+    ended undecided."""
+    reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
+    if figure.has_no_equilibrium(file) and figure.array(file, "/failure/moves_on")[0]:
+        return ""
+    undecided = re.match(r"(after \d+ steps) (the unbalanced force ratio is \S+?)[,;]", reason)
+    return f"undecided: {undecided[1]} {undecided[2]}" if undecided else with_short_lengths(reason)
 
 
 def draw_failure(file, section, axes, fills=""):
@@ -461,8 +472,7 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     plot.says_factor = True
     if is_end:
         entries += draw_failure(file, section, axes, fills) + draw_unbalanced(file, section, axes)
-        reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
-        title += f"\n{with_short_lengths(reason)}"
+        title += f"\n{reason_in_short(file)}".rstrip()
     lines = [part for line in title.splitlines() for part in figure.wrapped(line, int(15 * plot.get_figwidth()))]
     plot.set_figheight(plot.get_figheight() + 0.13 * (len(lines) - 1))
     if getattr(axes, "has_key", False):

@@ -1580,6 +1580,47 @@ class SearchOptions(Studies):
             self.assertTrue(float(low) == 64 if high == "" else float(high) > float(low), (low, high))
 
 
+    def test_no_option(self):
+        text = "demsolve_options = []\n" + NETWORKS.format(runs=3)
+        self.assertEqual(study_file.read(self.written(text)).demsolve_options, [])
+
+
+class Definitions(Studies):
+    def test_of_quantities(self):
+        """A report says what each quantity is."""
+        collected = """
+            [[collect]]
+            name = "a"
+            what = "displacement"
+            point = "crest"
+            relative_to = "behind"
+            component = "x"
+            stage = "bench 1"
+            [[collect]]
+            name = "b"
+            what = "displacement"
+            point = "crest"
+            component = "length"
+            since = "first reading"
+            date = 12.5
+            [[collect]]
+            what = "factor of safety"
+            [[collect]]
+            what = "blocks"
+            statistic = "largest area"
+            [[collect]]
+            what = "failed"
+            """
+        study = study_file.read(self.written('scene = "scene.toml"\n[[vary]]\nnetwork = true\n[design]\nruns = 2\n' + collected))
+        self.assertEqual([one.definition() for one in study.quantities], [
+            'Displacement of "crest" relative to "behind" to the right (x), just after stage "bench 1", since the in-situ equilibrium.',
+            'Displacement of "crest" as the length of the vector, on day 12.5, since the first reading of "crest".',
+            "Strength reduction factor at the lower end of the bracket, with which there is an equilibrium.",
+            "Strength reduction factor at the upper end of the bracket, with which there is no equilibrium.",
+            "Largest area of all blocks before the first stage.",
+            "1 if blocks move and there is no equilibrium, 0 if there is one; runs that end undecided have no value."])
+
+
 class Intervals(unittest.TestCase):
     def test_by_tables(self):
         values = np.arange(1.0, 11.0)  # mean 5.5, deviation 3.02765
