@@ -24,7 +24,7 @@ import subprocess
 import sys
 import time
 
-from . import ensemble, plan, quantities, scene_keys, study_file
+from . import ensemble, plan, quantities, reading, scene_keys, study_file
 from .chain import CANNOT_WRITE, FAILED_INSIDE, was_stopped, without
 from .errors import NotDone, NotWanted, lacks_memory
 
@@ -90,11 +90,11 @@ def made(study, scene, text, run, programs, folder):
     """One try of a run: its line of results. Raises Interrupted if there is none."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
-    values = {}
+    values, formulas = {}, plan.formulas_in(folder.parent.parent)
     for parameter, value in zip(study.parameters, run["given"]):
         for key in parameter.keys:
             values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
-    (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
+    (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(formulas or scene, values)) if values else text, "utf-8")
     row = {"run": run["run"], "exit_code": 0, "program": "", "reason": "", "warnings": []}
     seconds, processor_before, codes, endings = 0.0, processor_seconds(), {}, {}
     for name, arguments in programs_of(study, run["run"]):
@@ -116,6 +116,8 @@ def made(study, scene, text, run, programs, folder):
             row.update(exit_code=code, program=name, reason=message)
         if code != 0 and name != "demsolve":
             break
+        if name == "jointgen" and formulas:  # dates can be numbers by a formula
+            scene = reading.File(folder / "network.h5").scene
     row.update(network=run["network"], given=run["given"])
     row["no_equilibrium"] = endings
     row["values"] = quantities.of_run(study, scene, folder, codes, endings)

@@ -3,6 +3,7 @@
     study.toml    the study file, as it was first given      scene.toml    the scene, with the files that it names in it
     plan.json     what makes the runs what they are, and which runs a group has
     design.csv    what each run is given
+    formulas.toml the scene with the formulas of its keys, if a name of [variables] varies; scene.toml has their numbers
 """
 
 import csv
@@ -56,8 +57,22 @@ def scene_text(study, programs, out):
         network.unlink(missing_ok=True)
 
 
-def check_keys(study, scene):
-    """Refuses keys that the scene does not have, or that are not numbers where a law wants one."""
+def varied_names(study):
+    """The names of [variables] that a study varies."""
+    parts = [scene_keys.parts_of(key) for one in study.parameters for key in one.keys]
+    return {part[1] for part in parts if part[0] == "variables" and len(part) == 2}
+
+
+def with_formulas(study, scene):
+    """The scene with its formulas, and the files that it names in it, as a dict; None if no name of [variables] varies."""
+    if not varied_names(study):
+        return None
+    files_in_it = {"file": scene["file"]} if "file" in scene else {}
+    return {**tomllib.loads(study.scene.read_text(encoding="utf-8-sig")), **files_in_it}
+
+
+def check_keys(study, scene, formulas):
+    """Refuses keys that the scene does not have, or that are not numbers where a law wants one. formulas: as with_formulas()."""
     taken = {}
     for one in study.parameters:
         for key in one.keys:
@@ -66,9 +81,10 @@ def check_keys(study, scene):
             except NotWanted as error:
                 raise NotWanted(f"{one.place}key {error}") from None
             parts = tuple(scene_keys.parts_of(key))
-            if parts[0] == "variables":  # the scene has their numbers by now
-                raise NotWanted(f'{one.place}"{key}" is a name of [variables], which cannot vary; expected the keys that use it, as a list '
-                                "in key; with multiplies = true they have one factor")
+            formula = scene_keys.value_at(formulas, key) if formulas else None
+            if isinstance(formula, str) and (parts[0] == "variables" or not isinstance(value, str)):
+                raise NotWanted(f'{one.place}"{key}" is the formula "{formula}" in the scene; expected a number there, or the names of '
+                                "[variables] in the formula as key")
             if parts in taken:
                 raise NotWanted(f'{one.place}"{key}" varies in "{taken[parts]}", too; expected it once')
             taken[parts] = one.name
@@ -78,11 +94,15 @@ def check_keys(study, scene):
                 raise NotWanted(f'{one.place}"{key}" is {study_file.shown(value)} in the scene; expected values of the same kind')
 
 
-def check_histories(study):
-    """Refuses statistics of histories where what happens, and when, differs between runs."""
+def check_histories(study, formulas):
+    """Refuses statistics of histories where what happens, and when, differs between runs. formulas: as with_formulas()."""
+    fixed = ("schedule", "stage", "point", "monitoring_line")
     for one in study.parameters if study.histories else []:
         for key in one.keys:
-            if scene_keys.parts_of(key)[0] in ("schedule", "stage", "point"):
+            table, *name = scene_keys.parts_of(key)
+            used = formulas and table == "variables" and any(
+                scene_keys.names_in(formulas.get(other)) & scene_keys.dependent(formulas, name) for other in fixed)
+            if table in fixed or used:
                 raise NotWanted(f'{one.place}"{key}" varies, so histories of runs cannot be put beside each other; expected histories = false')
 
 
@@ -91,7 +111,7 @@ def group_size(runs):
     return next(size for size in GROUP_SIZES if size <= max(1, runs // GROUPS_WANTED))
 
 
-def identity(study, scene, programs):
+def identity(study, scene, formulas, programs):
     """What makes runs what they are: runs of another study are not mixed in."""
     design = study.design
     sizes = [] if design.kind in study_file.EXTENSIBLE else [design.runs, design.networks, design.parameters, design.points,
@@ -112,6 +132,7 @@ def identity(study, scene, programs):
         "keep": study.keep,
         "the programs' versions": versions,
         "the lines of results": LINES,
+        **({"the formulas of the scene": scene_keys.toml_text(formulas)} if formulas else {}),
     }
 
 
@@ -119,11 +140,12 @@ def make(study, out, programs):
     """Writes the plan into the folder, or checks that the one there is of the same study. Returns the scene as tomllib reads it."""
     text = scene_text(study, programs, out)
     scene = tomllib.loads(text)
-    check_keys(study, scene)
+    formulas = with_formulas(study, scene)
+    check_keys(study, scene, formulas)
     quantities.check(study, scene)
-    check_histories(study)
+    check_histories(study, formulas)
     networks, values = ([], []) if study.design.directions else design.draw(study)  # directions are drawn as runs are made
-    what = json.loads(json.dumps(identity(study, text, programs)))
+    what = json.loads(json.dumps(identity(study, text, formulas, programs)))
     path = out / "plan.json"
     if path.exists():
         old = parsed(path.read_bytes(), path)
@@ -141,11 +163,14 @@ def make(study, out, programs):
     else:
         size = group_size(study.design.runs)
     files.write_text(out / "scene.toml", text)
+    if formulas:
+        files.write_text(out / "formulas.toml", scene_keys.toml_text(formulas))
     files.write_text(out / "study.toml", study.path.read_text(encoding="utf-8-sig"))
     files.write_text(out / "design.csv", files.csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
                                          [[run, network, *of_run] for run, (network, of_run) in enumerate(zip(networks, values))]))
     files.write_text(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
     planned.cache_clear()
+    formulas_in.cache_clear()
     return scene
 
 
@@ -164,6 +189,13 @@ def planned(out):
     study = study_file.read(out / "study.toml")
     text = (out / "scene.toml").read_text("utf-8")
     return study, tomllib.loads(text), text, parsed((out / "plan.json").read_bytes(), out / "plan.json")
+
+
+@functools.cache
+def formulas_in(out):
+    """The scene with its formulas, of the folder of a study that varies a name of [variables]; else None."""
+    path = out / "formulas.toml"
+    return tomllib.loads(path.read_text("utf-8")) if path.exists() else None
 
 
 def given(out, study, rows=()):

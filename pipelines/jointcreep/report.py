@@ -411,13 +411,13 @@ def of_study(out, programs, folder):
         parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in lines[:MOST_ROWS]) + "</ul>" if lines else "<p>None.</p>")
     parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
-    marked = materials.marked(study, scene)
+    marked = materials.marked(study, scene, plan.formulas_in(out))
     parts += ["<h2>Settings</h2>", settings(marked), "<h2>Versions</h2>",
               table(["program", "version"], found["identity"]["the programs' versions"].items()),
               *materials_of(marked, " Values with <i>varies by</i> change from run to run: these are the values in the runs, not that of the scene."),
               "<h2>Study file</h2>", *study_text((out / "study.toml").read_text("utf-8")),
               "<h2>Scene</h2>", "<p>As it is written, before the study changes values (section What varies).</p>" * bool(study.parameters),
-              f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
+              f"<pre>{escaped((out / ('formulas.toml' if plan.formulas_in(out) else 'scene.toml')).read_text('utf-8'))}</pre>"]
     return study.title or f"Study of {scene.get('title', out.name)}", parts
 
 

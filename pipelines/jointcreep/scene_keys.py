@@ -7,6 +7,7 @@ joint_material."crushed rock".friction_angle_deg
 
 import copy
 import datetime
+import re
 import tomllib
 
 from .errors import NotWanted
@@ -67,6 +68,22 @@ def changed(scene, values):
         holder, key = holder_of(scene, path)
         holder[key] = value
     return scene
+
+
+def names_in(value):
+    """The names of [variables] in a value of a scene with formulas: "H - 2 * B" has H and B. Words of texts are among them."""
+    if isinstance(value, str):
+        return set(re.findall(r"[A-Za-z_]\w*", value))
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return set().union(*map(names_in, inner))
+
+
+def dependent(scene, names):
+    """These names of [variables], and all whose formulas lead to one of them."""
+    formulas, found = {name: names_in(value) for name, value in scene.get("variables", {}).items()}, set(names)
+    while more := {name for name, inside in formulas.items() if inside & found} - found:
+        found |= more
+    return found
 
 
 def quoted(text):

@@ -981,7 +981,7 @@ values = [1, 2, 6]
                 if of_design == "runs = 40":  # a longer design begins with the shorter one
                     longer = study_file.read(self.written(text.replace("40", "60", 1)))
                     self.assertEqual(draw_design.draw(longer)[1][:40], given)
-                    self.assertIn("by numpy", plan.identity(study, "", self.chain.programs)["[design]"])
+                    self.assertIn("by numpy", plan.identity(study, "", None, self.chain.programs)["[design]"])
                     self.assertIn("probability above 0.1 mm ", answers.summary(study, [], "", [
                         (study.quantities[0], {"statistics": [("probability above 0.1", 2, 0.5, 0.1, 0.9)]}, [])], []))
 
@@ -1518,12 +1518,21 @@ class StudyFile(Studies):
                 key = line.split()[0]
                 self.refused(good + re.sub(rf"(?m)^{key} = .*\n", "", FRICTION) + line, expected)
 
-    def test_names_of_numbers_cannot_vary(self):
-        """The scene has their numbers already: nothing would change."""
-        (self.folder / "named.toml").write_text(f"{self.chain.small()}\n[variables]\nfriction = 30\n")
-        study = re.sub(r'(?m)^scene = .*$', 'scene = "named.toml"', NETWORKS.format(runs=3))
-        self.refused(study + FRICTION.replace("joint_material.joint.friction_angle_deg", "variables.friction"),
-                     r'"variables.friction" is a name of \[variables\], which cannot vary; expected the keys that use it')
+    def named(self, variables, key, formula):
+        """A study of the small scene, in which a key has a formula."""
+        scene = re.sub(rf"(?m)^{key} = .*$", f'{key} = "{formula}"', self.chain.small())
+        self.assertIn(formula, scene)
+        (self.folder / "named.toml").write_text(f"{scene}\n[variables]\n{variables}\n")
+        return re.sub(r'(?m)^scene = .*$', 'scene = "named.toml"', NETWORKS.format(runs=3))
+
+    def test_formulas(self):
+        """Names of [variables] vary if they are numbers, and keys that are formulas do not vary beside them."""
+        study = self.named('phi = "2 * half"\nhalf = 15', "friction_angle_deg", "phi + 0")
+        vary = "\n[[vary]]\nname = '{}'\nkey = '{}'\nvalues = [20, 30]\n"
+        self.refused(study + vary.format("phi", "variables.phi"), '"variables.phi" is the formula "2 \\* half" in the scene; expected a number')
+        self.refused(study + vary.format("half", "variables.half") + vary.format("friction", "joint_material.joint.friction_angle_deg"),
+                     'is the formula "phi \\+ 0" in the scene')
+        self.refused(study + vary.format("h", "variables.third"), '"variables.third": variables has no "third"')
 
     def test_the_folder_stays_clean(self):
         self.refused(NETWORKS.format(runs=1), "runs is 1")
@@ -1583,6 +1592,45 @@ class SearchOptions(Studies):
     def test_no_option(self):
         text = "demsolve_options = []\n" + NETWORKS.format(runs=3)
         self.assertEqual(study_file.read(self.written(text)).demsolve_options, [])
+
+
+class Variables(Studies):
+    def test_a_name_of_a_number_varies(self):
+        """All keys with a formula of it change: each run is that of the scene with these numbers. The report says so."""
+        scene = re.sub(r"(?m)^friction_angle_deg = .*$", 'friction_angle_deg = "2 * half"', self.chain.small())
+        scene = re.sub(r"(?m)^youngs_modulus_GPa = .*$", 'youngs_modulus_GPa = "1 / (1 / intact + 1 / 100)"', scene)
+        self.assertTrue("2 * half" in scene and "1 / intact" in scene)
+        (self.folder / "named.toml").write_text(scene + '\n[variables]\nhalf = 15\nintact = "2 * E"\nE = 10\n')
+        vary = ("\n[[vary]]\nname = 'half'\nkey = 'variables.half'\nvalues = [10, 20]\n"
+                "[[vary]]\nname = 'E'\nkey = 'variables.E'\nmultiplies = true\nvalues = [0.5, 2]\n")
+        text = re.sub(r'(?m)^scene = .*$', 'scene = "named.toml"\nkeep = ["network.h5"]', NETWORKS.format(runs=6)) + vary
+        out = self.made(self.written(text), self.folder / "out", "-j2")
+        rows = rows_of(out)
+        self.assertGreater(len({(row["half"], row["E"]) for row in rows}), 2)
+        for row in rows:
+            of_run = jointcreep.read(out / "kept" / f"{int(row['run']):06d}-network.h5").scene
+            self.assertEqual(of_run["joint_material"][0]["friction_angle_deg"], 2 * float(row["half"]))
+            self.assertAlmostEqual(of_run["rock"][0]["youngs_modulus_GPa"], 1 / (1 / (20 * float(row["E"])) + 1 / 100), places=12)
+        # The same as by hand.
+        row = next(row for row in rows if row["exit code"] == "0")
+        by_hand = scene + f"\n[variables]\nhalf = {row['half']}\nintact = \"2 * E\"\nE = {10 * float(row['E'])!r}\n"
+        joints = self.chain.run("strength-averaging", self.chain.network(by_hand, "--realization", row["network"]), self.folder / "j.h5")
+        moved = datasets(self.chain.run("demsolve", joints, self.folder / "r.h5"))
+        floor = list(moved["/history/point"]).index("floor")
+        self.assertEqual(float(row["floor y (mm)"]), 1e3 * moved["/history/displacement"][-1, floor, 1])
+        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        page = html.unescape((self.folder / "r.html").read_text())
+        for words in "2 * half, varies by half", "1 / (1 / intact + 1 / 100), varies by E", '"intact" = "2 * E"':
+            self.assertIn(words, page)
+        self.assertIn("<td>variables.half</td>", page)
+
+    def test_histories(self):
+        """Where stages or points depend on a name that varies, histories cannot be put beside each other."""
+        formulas = {"variables": {"a": 1, "b": "a * 2", "c": 3}, "stage": [{"date": 1, "remove_m": [[["b", 0], [1, 1], [2, 2]]]}]}
+        for key, is_refused in ("variables.a", True), ("variables.b", True), ("variables.c", False):
+            study = types.SimpleNamespace(histories=True, parameters=[types.SimpleNamespace(keys=[key], place="")])
+            with self.subTest(key), self.assertRaises(NotWanted) if is_refused else contextlib.nullcontext():
+                plan.check_histories(study, formulas)
 
 
 class Definitions(Studies):
