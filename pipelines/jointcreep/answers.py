@@ -32,7 +32,7 @@ FEWEST = 10  # values from which convergence is shown
 FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 20  # failed runs that the summary lists
-SHORT = 90  # characters of a reason there
+SHORT = 180  # characters of a reason there
 LARGEST_FACTOR = 64  # that the search of a factor of safety tries
 
 

@@ -270,7 +270,7 @@ def read(path):
 
     title = top.text("title", "")
     scene = path.parent / top.text("scene")
-    options = demsolve_options_of(top, "demsolve_options")
+    options = demsolve_options_of(top, "demsolve_options", 0)
     with_histories = top.flag("histories", False)
     kept = top.several("keep", [], lambda one: one in KEPT, "a list of " + ", ".join(f'"{one}"' for one in KEPT))
     top.end()
@@ -302,9 +302,9 @@ def read(path):
     return Study(path, title, scene, varies_network, parameters, correlations, design, quantities, stop, options, with_histories, kept)
 
 
-def demsolve_options_of(table, key):
-    """Options of demsolve that a table gives under a key."""
-    options = table.several(key, [], lambda one: isinstance(one, str) and one.isprintable(), 'a list of options, such as ["--no-creep"]', 0)
+def demsolve_options_of(table, key, least=1):
+    """Options of demsolve that a table gives under a key, so many or more."""
+    options = table.several(key, [], lambda one: isinstance(one, str) and one.isprintable(), 'a list of options, such as ["--no-creep"]', least)
     for option in options:
         if option.split("=")[0] in ("-o", "--output", "--checkpoint", "--factor-of-safety", "-h", "--help", "--version"):
             table.wrong(key, f"options without {option}")
