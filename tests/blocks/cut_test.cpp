@@ -261,21 +261,40 @@ TEST(cut, vertices_closer_than_the_limit_are_merged_and_the_outline_keeps_its_co
         EXPECT_NE(std::find(blocks.vertex.begin(), blocks.vertex.end(), corner), blocks.vertex.end());
 }
 
+// A joint that cuts off less than the limit at a corner of the outline, the first or another one, becomes this corner.
+TEST(cut, a_joint_that_cuts_off_a_corner_becomes_the_corner)
+{
+    for (std::size_t first = 0; first < square.size(); ++first)
+        for (const Vector2d& corner : square) {
+            Polygon outline = square;
+            std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(first), outline.end());
+            const Scene scene = section(outline, 0.5);
+            const Vector2d in(corner.x() > 5 ? -1 : 1, corner.y() > 5 ? -1 : 1);
+            Joints joints;
+            add_joint(joints, corner + Vector2d(1.25 * in.x(), -in.y()),
+                      corner + Vector2d(-in.x(), 1.25 * in.y()));
+            const Blocks blocks = blocks::cut(scene, joints);
+            EXPECT_EQ(faults(scene, blocks), "");
+            EXPECT_EQ(blocks.block_area, std::vector<double>{100}) << corner.transpose() << ' ' << first;
+        }
+}
+
 // A corner that points at a joint, in every part of it. The joint then goes through the corner, and what is above it are two blocks.
 TEST(cut, a_joint_close_to_a_corner_goes_through_it)
 {
-    for (int i = 0; i < 20; ++i)
-        for (const bool is_reversed : {false, true}) {
-            const double x = 1 + i * 0.42; // the joint's ends are at 0 and 10
-            const Scene scene =
-                section({{0, 0}, {10, 0}, {10, 10}, {x + 0.4, 10}, {x, 5.2}, {x - 0.4, 10}, {0, 10}}, 0.5);
-            Joints joints;
-            add_joint(joints, {is_reversed ? 11.0 : -1.0, 5}, {is_reversed ? -1.0 : 11.0, 5});
-            const Blocks blocks = blocks::cut(scene, joints);
-            EXPECT_EQ(faults(scene, blocks), "");
-            EXPECT_EQ(blocks.block_area.size(), 3u) << x;
-            EXPECT_NEAR(blocks.report.largest_move, 0.2, 1e-12);
-        }
+    for (const double end : {10.0, 200.0})
+        for (int i = 0; i < 20; ++i)
+            for (const bool is_reversed : {false, true}) {
+                const double x = end * (0.1 + i * 0.042); // the joint's ends are at 0 and there
+                const Scene scene = section(
+                    {{0, 0}, {end, 0}, {end, 10}, {x + 0.4, 10}, {x, 5.2}, {x - 0.4, 10}, {0, 10}}, 0.5);
+                Joints joints;
+                add_joint(joints, {is_reversed ? end + 1 : -1.0, 5}, {is_reversed ? -1.0 : end + 1, 5});
+                const Blocks blocks = blocks::cut(scene, joints);
+                EXPECT_EQ(faults(scene, blocks), "");
+                EXPECT_EQ(blocks.block_area.size(), 3u) << x;
+                EXPECT_NEAR(blocks.report.largest_move, 0.2, 1e-12);
+            }
 }
 
 // Two joints from one place, half a degree apart where the limit is 1 degree, from 50 to 200 m long: the far end of one moves to

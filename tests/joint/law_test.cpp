@@ -239,6 +239,16 @@ RC_GTEST_PROP(law, along_an_overlap_it_is_the_sum_over_points, ())
         strength += limit * length / parts;
     }
     RC_ASSERT(std::abs(exact.force - force) < 1e-5 * force);
+    // Stiffness in the middle, and where the overlap is most closed.
+    const auto slope_at = [&](double v) {
+        State below = start, above = start;
+        const double h = 1e-4 * v;
+        return (respond(law, below, 0, 0, h - v, 0).sigma_n - respond(law, above, 0, 0, -h - v, 0).sigma_n) /
+               (2 * h);
+    };
+    for (const auto& [stiffness, v] : {std::pair(exact.stiffness, (closing[0] + closing[1]) / 2),
+                                       {exact.stiffest, std::max(closing[0], closing[1])}})
+        RC_ASSERT(std::abs(stiffness - slope_at(v)) < 1e-4 * stiffness);
     RC_ASSERT(std::abs(exact.force_on_ends[1] - on_second) < 1e-5 * force);
     RC_ASSERT(std::abs(exact.force_on_ends[0] + exact.force_on_ends[1] - exact.force) < 1e-12 * force);
     RC_ASSERT(std::abs(exact.stored - energy) < 1e-5 * energy);

@@ -83,6 +83,39 @@ TEST(remaining_displacement, counts_forces_above_a_share_and_above_rounding)
     EXPECT_EQ(remaining(s), 0) << "no load of its own";
 }
 
+// A share counts of weight and tractions together: here tractions carry nearly all of the weight.
+TEST(remaining_displacement, counts_what_weight_and_tractions_leave)
+{
+    Section s = two_blocks();
+    put_on(s, 1e4, 0);
+    for (std::size_t g = 0; g < s.assembly.load.size(); ++g) {
+        s.assembly.applied[g] = -0.95 * s.assembly.load[g];
+        s.assembly.force[g] = s.assembly.load[g] + s.assembly.applied[g];
+    }
+    EXPECT_NEAR(remaining(s, 0.1), 0.05 * 1e4 / (2 * K), 1e-6 * 1e4 / (2 * K));
+}
+
+// A block on a fixed boundary, with no contact, does not move, while its neighbour is on a joint.
+TEST(remaining_displacement, of_a_block_on_a_fixed_boundary)
+{
+    Scene scene = section({{10, 5}, {14, 5}, {14, 7}, {10, 7}}, 0.1);
+    scene.zone_size = 1;
+    scene.boundaries = {{.from = {10, 5}, .to = {12, 5}, .fix_x = true, .fix_y = true},
+                        {.from = {12, 5}, .to = {14, 5}, .joint = "joint"}};
+    Joints joints;
+    add_joint(joints, {12, 4}, {12, 8});
+    Section s = assembled(std::move(scene), joints, K, K);
+    for (std::size_t c = 0; c < s.assembly.contacts.status.size(); ++c)
+        if (s.mesh.contact_centre[c].y() > 5)
+            s.assembly.contacts.status[c] = ContactStatus::removed;
+    std::fill(s.assembly.force.begin(), s.assembly.force.end(), Vector2d(0, 0));
+    for (std::size_t g = 0; g < s.assembly.load.size(); ++g)
+        if (s.assembly.position[g].y() > 6.9 && s.assembly.position[g].x() < 11.9)
+            s.assembly.force[g] = s.assembly.load[g] = {1e4, -1e4};
+    EXPECT_GT(remaining(s), 0);
+    EXPECT_LT(remaining(s), 1e5 / K);
+}
+
 TEST(size_of, is_the_diagonal)
 {
     EXPECT_NEAR(mechanics::size_of(two_blocks().assembly), std::hypot(4, 2), 1e-12);

@@ -481,6 +481,15 @@ TEST_P(relax_with, a_block_on_an_incline_slides_above_the_friction_angle)
         const Failure failure = failure_of(error, s.mesh, s.assembly);
         ASSERT_EQ(failure.block.size(), 1U);
         EXPECT_GT(failure.place[0].y(), -5 * std::sin(35 * deg)); // the upper one of the two
+        // Displacements are those of the last steps, as the message has the largest one.
+        const std::string what = error.what(), says = " is moving: ";
+        if (const std::size_t place = what.find(says); place != std::string::npos) {
+            double largest = 0;
+            for (const Vector2d& motion : error.motion)
+                largest = std::max(largest, motion.norm());
+            const double said = std::stod(what.substr(place + says.size()));
+            EXPECT_NEAR(largest, said, 1e-3 * said);
+        }
         const Vector2d along(std::cos(35 * deg), -std::sin(35 * deg));
         EXPECT_NEAR(failure.motion[0].dot(along), failure.motion[0].norm(), 1e-2 * failure.motion[0].norm());
     }

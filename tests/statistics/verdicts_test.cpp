@@ -296,25 +296,33 @@ TEST(Verdicts, OfALawNeedTen)
     EXPECT_GE(sizes.size(), 4u);
 }
 
-// The interval of the mean pole's angle off its target contains 0 where the p-value of the target is above 1 less the confidence, 0.05.
+// The interval of the mean pole's angle off its target contains 0 where the p-value of the target is above 1 less the confidence, 0.05. The
+// concentration is that of the law on average: its estimate has no bias.
 TEST(Verdicts, OfTheMeanPoleAgreeWithItsInterval)
 {
     const Scene drawn_from = examples()[3].scene; // some 20 poles
     Scene held_against = drawn_from;
     held_against.joint_sets[0].orientation->dip += 4 * deg;
     int contain = 0, all = 0;
+    double concentration = 0;
     for (int r = 0; r < 300; ++r) {
         const Statistics rows = report_of(drawn_from, held_against, r);
-        const auto row = static_cast<std::size_t>(
-            std::find(rows.quantity.begin(), rows.quantity.end(), "mean pole, off its target") -
-            rows.quantity.begin());
-        ASSERT_LT(row, rows.quantity.size());
+        const auto row_named = [&](const char* quantity) {
+            return static_cast<std::size_t>(std::find(rows.quantity.begin(), rows.quantity.end(), quantity) -
+                                            rows.quantity.begin());
+        };
+        const std::size_t row = row_named("mean pole, off its target"),
+                          of_concentration = row_named("pole concentration");
+        ASSERT_LT(std::max(row, of_concentration), rows.quantity.size());
         if (rows.is_tested[row] == 0)
             continue; // fewer than ten
         EXPECT_EQ(rows.low[row] == 0, rows.p_value[row] >= .05) << rows.p_value[row];
         contain += rows.low[row] == 0;
+        concentration += rows.achieved[of_concentration] / rows.target[of_concentration];
         ++all;
     }
+    EXPECT_NEAR(concentration / all, 1,
+                3.3 / std::sqrt(17. * all)); // deviation of one over sqrt(n - 3), n about 20
     EXPECT_GT(contain, all / 10);
     EXPECT_LT(contain, all * 9 / 10);
 }
