@@ -103,7 +103,9 @@ bool DynamicStage::goes_on()
 void DynamicStage::pass(Tape& tape)
 {
     tape(due_, largest_energy_, largest_error_, section_.settled.effort.steps, dynamics_);
-    joint::pass(tape, section_.assembly.contacts); // joints only: dynamics_ keeps rock's
+    // Joints only: dynamics_ keeps rock's. Creep displacements of contacts are those of the last time their forces were put back.
+    joint::pass(tape, section_.assembly.contacts);
+    tape(section_.assembly.contacts.offset);
 }
 
 void DynamicStage::settle_in_situ()

@@ -96,8 +96,9 @@ class Job:
         return is_killed(running), any(calls(log, folder, of_the_killed=True))
 
     def is_checkpoint(self, name):
-        """Also of that of the last factor with equilibrium."""
-        return bool(self.checkpoint) and name in (self.checkpoint, self.checkpoint.replace(".h5", ".stands.h5"))
+        """Also of those of the last factor with equilibrium and of the last one without."""
+        return bool(self.checkpoint) and name in (self.checkpoint, *(self.checkpoint.replace(".h5", f".{last}.h5")
+                                                                     for last in ("stands", "falls")))
 
     def lost(self, folder, old):
         """What is not whole after a kill."""

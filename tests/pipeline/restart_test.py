@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
-from large_creep_test import stack
+from large_creep_test import LARGE, RIGID, slope, stack
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
@@ -197,6 +197,12 @@ class Restart(ChainTest):
         for more in 'rigid_rocks = ["rock"]', "stiffness_damping_s = 3e-5\nrelease_s = 0.05":
             went_on = self.assert_killed_goes_on(sliding_block(more), kills=(40,))
             self.assertTrue(all("in the middle of a search" in place for place in went_on), went_on)
+
+    def test_contacts_that_are_excavated_keep_their_creep(self):
+        """Also where the run is killed in the dynamic analysis of the stage that excavates them."""
+        text = changed(slope(LARGE + RIGID), "^end = 60", "end = 2")
+        went_on = self.assert_killed_goes_on(text, kills=(8, 15, 20))
+        self.assertTrue(any("in the middle of a search" in place and "stage 1" in place for place in went_on), went_on)
 
     def test_in_the_middle_of_a_search_for_a_factor_of_safety(self):
         """The runs that are decided are not made again."""
