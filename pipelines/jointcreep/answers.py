@@ -32,7 +32,7 @@ FEWEST = 10  # values from which convergence is shown
 FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 20  # failed runs that the summary lists
-SHORT = 180  # characters of a reason there
+SHORT = 90  # characters of a reason there
 LARGEST_FACTOR = 64  # that the search of a factor of safety tries
 
 
@@ -522,6 +522,8 @@ def failure_place(row):
 def failure_words(row):
     """A short line on a run that failed."""
     reason = row["reason"].partition(";")[0].removeprefix(f"{row['program']}: ")
+    reason = re.sub(r"(after \d+ steps) the unbalanced force ratio is .*? and (by estimate .*? of displacement remain).*", r"\1 \2",
+                    reason)
     code = "" if row["exit_code"] == NO_EQUILIBRIUM else f"exit code {row['exit_code']}: "
     what = UNDECIDED if ending_of(row) == UNDECIDED else "failed"
     return f"run {row['run']} {what}: {failure_place(row)}{row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")

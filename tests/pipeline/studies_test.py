@@ -600,6 +600,9 @@ class Failures(Studies):
         self.assertEqual(lines[:2], ["run 0 undecided: demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016",
                                      "run 1 failed: demsolve: no equilibrium: the rock is moving"])
         self.assertEqual(text.splitlines()[text.splitlines().index(lines[-1]) + 1], "and 4 more in runs.csv")
+        small_ratio = undecided.replace("0.00016;", "3e-07, expected 1e-06, and by estimate 1.27 m of displacement remain, expected 2e-05 m;")
+        self.assertEqual(answers.failure_words({**rows[0], "reason": small_ratio}),
+                         "run 0 undecided: demsolve: no equilibrium: after 1000000 steps by estimate 1.27 m of displacement remain")
         self.assertEqual(len([line for line in lines if " failed: " in line or " undecided: " in line]), 20)
         many = answers.failure_words({**rows[0], "reason": "demsolve: " + "word " * 300})
         self.assertLess(len(many), 130)
