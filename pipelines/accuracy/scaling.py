@@ -144,7 +144,7 @@ def scaling_table(rows):
                       f"{row['memory_MB']:.0f}", f"{row['cholmod_MB']:.0f}"])
     return table(["section", "zones", "entries of the factor per unknown", "equilibria", "with changed contacts",
                   "factorisations", "back-substitutions", "run / factorisation", "run / back-substitution",
-                  "outside equilibria (%)", "equilibria / least", "memory (MB)", "of CHOLMOD alone (MB)"], lines)
+                  "beside equilibria (%)", "equilibria / least", "memory (MB)", "of CHOLMOD alone (MB)"], lines)
 
 
 def powers_table(rows):
@@ -156,7 +156,7 @@ def powers_table(rows):
         lines.append([name, f"{those[0]['zones']:.0f} to {those[-1]['zones']:.0f}", *(
             f"{np.polyfit(zones, np.log([row[key] for row in those]), 1)[0]:.2f}" for key in
             ("run_s", "beside_s", "analyse_s", "factorise_s", "solve_s", "memory_MB", "cholmod_MB"))])
-    return table(["section", "zones", "run", "outside equilibria", "analysis", "factorisation", "back-substitution",
+    return table(["section", "zones", "run", "beside equilibria", "analysis", "factorisation", "back-substitution",
                   "memory", "of CHOLMOD alone"], lines)
 
 
@@ -166,7 +166,7 @@ def draw(rows, path):
     for name, line in looks.items():
         those = [row for row in rows if row["section"] == name]
         unit = min(row["factorise_s"] for row in rows)
-        for key, label, color in (("run_s", "demsolve", 0), ("beside_s", "outside equilibria", 2),
+        for key, label, color in (("run_s", "demsolve", 0), ("beside_s", "beside equilibria", 2),
                                   ("factorise_s", "CHOLMOD: factorisation", 1),
                                   ("solve_s", "CHOLMOD: back-substitution", 3)):
             axes[0].loglog([row["zones"] for row in those], [row[key] / unit for row in those], line, marker="o",

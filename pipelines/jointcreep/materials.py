@@ -5,7 +5,7 @@ A key of a scene ends with its unit: normal_stiffness_MPa_per_m becomes "normal 
 
 import math
 
-from . import plan, scene_keys
+from . import scene_keys
 
 UNITS = {"MPa_day_per_m": "MPa day/m", "GPa_day": "GPa day", "MPa_per_m": "MPa/m", "kg_per_m3": "kg/m3", "m2_per_MJ": "m2/MJ",
          "per_m3": "1/m3", "per_m2": "1/m2", "per_m": "1/m", "MPa": "MPa", "GPa": "GPa", "deg": "degrees", "mm": "mm", "m": "m"}
@@ -79,19 +79,19 @@ def marked(study, scene, formulas=None):
     """A scene in which the values that a study changes are words that say so, for tables(). formulas: the scene with its formulas, if
     names of [variables] vary."""
     if formulas:
-        by_name = {name: scene_keys.dependent(formulas, [name]) for name in plan.varied_names(study)}
-        scene = with_formulas(scene, formulas, by_name)
+        by_name = {name: scene_keys.dependent(formulas, [name]) for name in study.varied_names()}
+        scene = formulas_in_words(scene, formulas, by_name)
     return scene_keys.changed(scene, {key: f'varies by "{name}": {words}' for name, key, _, words in varied(study, scene)
                                       if scene_keys.parts_of(key)[0] != "variables"})
 
 
-def with_formulas(value, formula, by_name):
+def formulas_in_words(value, formula, by_name):
     """A value of a scene in which numbers whose formula leads to a name that varies are words that say so. by_name: names of [variables]
     that depend on each of these."""
     if isinstance(formula, dict):
-        return {key: with_formulas(one, formula.get(key), by_name) for key, one in value.items()}
+        return {key: formulas_in_words(one, formula.get(key), by_name) for key, one in value.items()}
     if isinstance(formula, list) and isinstance(value, list) and len(value) == len(formula):
-        return [with_formulas(one, inner, by_name) for one, inner in zip(value, formula)]
+        return [formulas_in_words(one, inner, by_name) for one, inner in zip(value, formula)]
     used = [name for name, names in by_name.items() if scene_keys.names_in(formula) & names]
     is_number = isinstance(value, (int, float)) and isinstance(formula, str)
     return f'{formula}, varies by {", ".join(used)}' if used and is_number else value

@@ -57,15 +57,9 @@ def scene_text(study, programs, out):
         network.unlink(missing_ok=True)
 
 
-def varied_names(study):
-    """The names of [variables] that a study varies."""
-    parts = [scene_keys.parts_of(key) for one in study.parameters for key in one.keys]
-    return {part[1] for part in parts if part[0] == "variables" and len(part) == 2}
-
-
 def with_formulas(study, scene):
     """The scene with its formulas, and the files that it names in it, as a dict; None if no name of [variables] varies."""
-    if not varied_names(study):
+    if not study.varied_names():
         return None
     files_in_it = {"file": scene["file"]} if "file" in scene else {}
     return {**tomllib.loads(study.scene.read_text(encoding="utf-8-sig")), **files_in_it}

@@ -11,6 +11,7 @@ import pathlib
 import re
 import tomllib
 
+from . import scene_keys
 from .errors import NotWanted
 
 DESIGNS = {  # what each needs
@@ -161,6 +162,11 @@ class Study:
     demsolve_options: list
     histories: bool = False  # whether statistics of the histories of all points are wanted
     keep: list = dataclasses.field(default_factory=list)  # files of each run that stay, of KEPT
+
+    def varied_names(self):
+        """The names of [variables] that vary."""
+        parts = [scene_keys.parts_of(key) for one in self.parameters for key in one.keys]
+        return {part[1] for part in parts if part[0] == "variables" and len(part) == 2}
 
     def options_of(self, run):
         """Options of demsolve for a run."""

@@ -2,7 +2,7 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The colour scale of the size is logarithmic. Its first colour is for the smallest blocks, which together are 1 percent of the area.
+Colours show the sizes of blocks on a logarithmic scale. The smallest blocks, with 1 percent of the area in all, share the first colour.
 Rock outside the regions of joint sets (region_m) is grey. With a window, the scale is for the blocks inside the window. Larger
 blocks are grey.
 """

@@ -97,8 +97,7 @@ class Job:
 
     def is_checkpoint(self, name):
         """Also of those of the last factor with equilibrium and of the last one without."""
-        return bool(self.checkpoint) and name in (self.checkpoint, *(self.checkpoint.replace(".h5", f".{last}.h5")
-                                                                     for last in ("stands", "falls")))
+        return bool(self.checkpoint) and name in [self.checkpoint.replace(".h5", end) for end in (".h5", ".stands.h5", ".falls.h5")]
 
     def lost(self, folder, old):
         """What is not whole after a kill."""

@@ -20,12 +20,12 @@ namespace
 
 constexpr double K = 1e9;
 
-// Two blocks of 2 m x 2 m beside each other on ground with a joint; nothing between them.
-Section two_blocks()
+// Two blocks of 2 m x 2 m beside each other on ground with a joint, or on other supports; nothing between them.
+Section two_blocks(std::vector<Boundary> supports = {{.from = {10, 5}, .to = {14, 5}, .joint = "joint"}})
 {
     Scene scene = section({{10, 5}, {14, 5}, {14, 7}, {10, 7}}, 0.1);
     scene.zone_size = 1;
-    scene.boundaries = {{.from = {10, 5}, .to = {14, 5}, .joint = "joint"}};
+    scene.boundaries = std::move(supports);
     Joints joints;
     add_joint(joints, {12, 4}, {12, 8});
     Section s = assembled(std::move(scene), joints, K, K);
@@ -98,16 +98,8 @@ TEST(remaining_displacement, counts_what_weight_and_tractions_leave)
 // A block on a fixed boundary, with no contact, does not move, while its neighbour is on a joint.
 TEST(remaining_displacement, of_a_block_on_a_fixed_boundary)
 {
-    Scene scene = section({{10, 5}, {14, 5}, {14, 7}, {10, 7}}, 0.1);
-    scene.zone_size = 1;
-    scene.boundaries = {{.from = {10, 5}, .to = {12, 5}, .fix_x = true, .fix_y = true},
-                        {.from = {12, 5}, .to = {14, 5}, .joint = "joint"}};
-    Joints joints;
-    add_joint(joints, {12, 4}, {12, 8});
-    Section s = assembled(std::move(scene), joints, K, K);
-    for (std::size_t c = 0; c < s.assembly.contacts.status.size(); ++c)
-        if (s.mesh.contact_centre[c].y() > 5)
-            s.assembly.contacts.status[c] = ContactStatus::removed;
+    Section s = two_blocks({{.from = {10, 5}, .to = {12, 5}, .fix_x = true, .fix_y = true},
+                            {.from = {12, 5}, .to = {14, 5}, .joint = "joint"}});
     std::fill(s.assembly.force.begin(), s.assembly.force.end(), Vector2d(0, 0));
     for (std::size_t g = 0; g < s.assembly.load.size(); ++g)
         if (s.assembly.position[g].y() > 6.9 && s.assembly.position[g].x() < 11.9)

@@ -1591,7 +1591,6 @@ class SearchOptions(Studies):
             low, high = row["factor of safety, lower end"], row["factor of safety, upper end"]
             self.assertTrue(float(low) == 64 if high == "" else float(high) > float(low), (low, high))
 
-
     def test_no_option(self):
         text = "demsolve_options = []\n" + NETWORKS.format(runs=3)
         self.assertEqual(study_file.read(self.written(text)).demsolve_options, [])

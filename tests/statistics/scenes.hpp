@@ -3,7 +3,11 @@
 #pragma once
 
 #include "model/scene.hpp"
+#include "model/statistics.hpp"
 #include "model/units.hpp"
+
+#include <stdexcept>
+#include <string>
 
 namespace jointcreep::statistics
 {
@@ -18,6 +22,15 @@ inline Scene scene_of(const JointSet& set, const Polygon& outline)
     scene.joint_materials = {{"clay", 1e8, 1e8, 0, .3, 0, {}}};
     scene.joint_sets = {set};
     return scene;
+}
+
+// The row of a quantity, of any subject if this is "".
+inline std::size_t row_of(const Statistics& rows, const std::string& subject, const std::string& quantity)
+{
+    for (std::size_t i = 0; i < rows.quantity.size(); ++i)
+        if ((subject.empty() || rows.subject[i] == subject) && rows.quantity[i] == quantity)
+            return i;
+    throw std::runtime_error("no row " + quantity);
 }
 
 inline Polygon box()

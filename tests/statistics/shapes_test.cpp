@@ -60,14 +60,6 @@ void add_trace(Joints& joints, const Vector2d& from, const Vector2d& to)
     joints.set.push_back(0);
 }
 
-std::size_t row_of(const Statistics& rows, const std::string& subject, const std::string& quantity)
-{
-    for (std::size_t i = 0; i < rows.quantity.size(); ++i)
-        if (rows.subject[i] == subject && rows.quantity[i] == quantity)
-            return i;
-    throw std::runtime_error("no row " + quantity);
-}
-
 } // namespace
 
 TEST(BlockShape, OfASquareIsOne)

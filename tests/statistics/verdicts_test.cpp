@@ -307,13 +307,8 @@ TEST(Verdicts, OfTheMeanPoleAgreeWithItsInterval)
     double concentration = 0;
     for (int r = 0; r < 300; ++r) {
         const Statistics rows = report_of(drawn_from, held_against, r);
-        const auto row_named = [&](const char* quantity) {
-            return static_cast<std::size_t>(std::find(rows.quantity.begin(), rows.quantity.end(), quantity) -
-                                            rows.quantity.begin());
-        };
-        const std::size_t row = row_named("mean pole, off its target"),
-                          of_concentration = row_named("pole concentration");
-        ASSERT_LT(std::max(row, of_concentration), rows.quantity.size());
+        const std::size_t row = row_of(rows, "", "mean pole, off its target"),
+                          of_concentration = row_of(rows, "", "pole concentration");
         if (rows.is_tested[row] == 0)
             continue; // fewer than ten
         EXPECT_EQ(rows.low[row] == 0, rows.p_value[row] >= .05) << rows.p_value[row];
@@ -335,9 +330,7 @@ TEST(Verdicts, OfConstantsAreExact)
     turned.joint_sets[0].trace_angle->mean += .001 * deg;
     for (const auto& [scene, wanted] : {std::pair{example.scene, Verdict::pass}, {turned, Verdict::fail}}) {
         const Statistics rows = report_of(scene, example.scene, 0);
-        const auto row =
-            std::find(rows.quantity.begin(), rows.quantity.end(), "trace angle") - rows.quantity.begin();
-        EXPECT_EQ(rows.verdict.at(static_cast<std::size_t>(row)), static_cast<Index>(wanted));
+        EXPECT_EQ(rows.verdict[row_of(rows, "", "trace angle")], static_cast<Index>(wanted));
     }
     Scene constant = example.scene;
     constant.joint_sets[0].spacing = {Kind::constant, 3, 0};
