@@ -80,6 +80,7 @@ Section::Section(const Scene& scene_of, const Network& network_of, const Equival
     assembly.threads =
         std::min(threads, 1 + static_cast<int>(result.mesh.zone_gridpoint.size()) / zones_per_thread);
     loading.apply(assembly, 0);
+    recorder.begin(result);
     result.states.initial_gap.assign(assembly.contacts.gridpoint.size(), 0.0); // until the first state
 }
 

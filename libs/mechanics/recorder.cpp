@@ -161,15 +161,19 @@ void Recorder::append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& 
     }
 }
 
+void Recorder::begin(Result& result) const
+{
+    result.history.point = point_name_;
+    result.history.point_position = point_position_;
+    result.history.first_reading_row.assign(point_.size(), -1);
+}
+
 void Recorder::record_history(Result& result, double time, const std::string& event,
                               const Assembly& assembly) const
 {
     History& history = result.history;
-    if (history.time.empty()) {
-        history.point = point_name_;
-        history.point_position = point_position_;
+    if (history.time.empty())
         history.first_reading_row.assign(point_.size(), 0);
-    }
     for (const Place& place : point_)
         history.present.push_back(is_present(place, assembly) ? 1 : 0);
     append(history.displacement, history.displacement, assembly.displacement, assembly);

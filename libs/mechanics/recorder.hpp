@@ -20,6 +20,9 @@ public:
     // input_error for a point outside the rock, and a gauge where there is no joint.
     Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh);
 
+    // Names the monitoring points in a result without rows.
+    void begin(Result& result) const;
+
     // A row of the histories at `time` since start [s]; `event` is the stage it is the first after, or "".
     void record_history(Result& result, double time, const std::string& event,
                         const Assembly& assembly) const;

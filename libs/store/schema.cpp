@@ -197,8 +197,8 @@ std::vector<Field> fields_of(History& history)
         {"/history/point", &history.point, {"point"}, "1", any(), "Names of the monitoring points."},
         {"/history/point_position", &history.point_position, {"point"}, "m", any(),
          "Position of the monitoring point {x, y}."},
-        {"/history/first_reading_row", &history.first_reading_row, {"point"}, "1", index_of("time"),
-         "Row of time from which the point's own readings count."},
+        {"/history/first_reading_row", &history.first_reading_row, {"point"}, "1", index_or_none("time"),
+         "Row of time from which the point's own readings count; -1 in checkpoints of the in-situ equilibrium."},
         {"/history/displacement", &history.displacement, {"time", "point"}, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium; the last one is kept once the point is "
          "removed."},

@@ -9,6 +9,7 @@ takes to see it again, and its files are kept in OUT/faults. The exit code is 1 
 
 import argparse
 import collections
+import concurrent.futures
 import csv
 import datetime
 import os
@@ -22,6 +23,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from chain import Chain
@@ -105,7 +107,7 @@ class Campaign:
         self.n, self.seed, self.out = arguments.n, arguments.seed, arguments.out.resolve()
         self.programs = arguments.programs.resolve()
         self.subject, self.outcomes, self.faults = subject, outcomes, faults
-        self.counts = {}
+        self.counts, self.lock = {}, threading.Lock()
         self.folder = tempfile.mkdtemp(prefix="jointcreep-", dir=MEMORY if os.access(MEMORY, os.W_OK) else None)
         self.chain = Chain(self.programs, ROOT, self.folder)
         self.out.mkdir(parents=True, exist_ok=True)
@@ -115,8 +117,21 @@ class Campaign:
     def random(self, *case):
         return chance(self.name, self.seed, *case)
 
+    def side_by_side(self, work, things):
+        """Calls work(thing) for each, as many at a time as the option --jobs says; yields what it returns, in their order."""
+        with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
+            yield from pool.map(work, things)
+
+    def version(self):
+        """Of the programs."""
+        return ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
+
     def count(self, subject, outcome, case="", what="", files=None, times=1):
         """Counts a trial. Of a fault says which and what; `files` is a folder to be kept."""
+        with self.lock:
+            self.counted(subject, outcome, case, what, files, times)
+
+    def counted(self, subject, outcome, case, what, files, times):
         self.counts.setdefault(subject, collections.Counter())[outcome] += times
         print(f"{subject}\t{case}\t{outcome}\t{what.strip()}", file=self.log, flush=True)
         if outcome in self.faults:
@@ -145,8 +160,7 @@ class Campaign:
         sys.exit(1 if found or not self.counts else 0)
 
     def write(self, about_n):
-        version = ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
-        about = {"n": about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
+        about = {"n": about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": self.version(),
                  "date": datetime.date.today().isoformat(), "machine": machine()}
         with files.replaced(self.out / f"{self.name}.csv") as partial, partial.open("w", newline="") as file:
             rows = csv.writer(file, lineterminator="\n")

@@ -2,7 +2,8 @@
 
 Scenes are all those of data and of tests/pipeline, and those that the tests write: the tests of whole programs run with a
 demsolve that keeps its input and options; with --only-calls they are all. N is how many, at most. Checkpoints are written every
-EVERY minutes. The bytes have to be those of a run without checkpoints that was not stopped.
+EVERY minutes. The bytes have to be those of a run without checkpoints that was not stopped. The calls of a test are kept in
+OUT/recorded/VERSION, and are not recorded again.
 """
 
 import json
@@ -43,21 +44,33 @@ def scenes():
 
 
 def recorded(campaign):
-    """Folders with the input of demsolve and its options, of each call by the tests of whole programs."""
-    programs, kept = campaign.chain.new_folder(), campaign.chain.new_folder()
-    for path in campaign.programs.iterdir():
-        if path.name == "jointcreep":  # which calls the programs beside it
-            shutil.copy(path, programs)
-        elif path.name != "demsolve":
-            (programs / path.name).symlink_to(path)
-    recorder = programs / "demsolve"
-    recorder.write_text(RECORDER.format(python=sys.executable, kept=str(kept), real=str(campaign.programs / "demsolve")))
-    recorder.chmod(0o755)
+    """Folders with the input of demsolve and its options, of each call by the tests of whole programs; a call that several tests
+    make is one."""
     tests = [path for path in sorted(ROOT.glob("tests/pipeline/*_test.py")) if not path.name.startswith(NOT_RECORDED)]
-    for test in tests:
-        before = len(list(kept.iterdir()))
+    calls = {}
+    for folders in campaign.side_by_side(lambda test: recorded_by(campaign, test), tests):
+        calls |= {folder.name: folder for folder in folders}
+    return [calls[name] for name in sorted(calls)]
+
+
+def recorded_by(campaign, test):
+    """The folders of the calls by one test."""
+    kept = campaign.out / "recorded" / campaign.version() / test.stem
+    if not kept.exists():
+        programs, partial = campaign.chain.new_folder(), kept.with_name(f"{test.stem}.partial")
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        for path in campaign.programs.iterdir():
+            if path.name == "jointcreep":  # which calls the programs beside it
+                shutil.copy(path, programs)
+            elif path.name != "demsolve":
+                (programs / path.name).symlink_to(path)
+        recorder = programs / "demsolve"
+        recorder.write_text(RECORDER.format(python=sys.executable, kept=str(partial), real=str(campaign.programs / "demsolve")))
+        recorder.chmod(0o755)
         done = ended([sys.executable, test, programs, ROOT], LONGEST_TEST)  # what the test says is no part of this
-        print(f"recover: {test.stem}: exit code {done.code}, {len(list(kept.iterdir())) - before} calls of demsolve", flush=True)
+        print(f"recover: {test.stem}: exit code {done.code}, {len(list(partial.iterdir()))} calls of demsolve", flush=True)
+        partial.rename(kept)
     return sorted(kept.iterdir())
 
 
@@ -98,19 +111,30 @@ def body(campaign):
     left = campaign.n - len(found)
     calls = recorded(campaign) if left > 0 else []
     campaign.random("calls").shuffle(calls)
-    for folder in calls[:max(left, 0)]:
-        options = json.loads((folder / "options.json").read_text())
-        tried = ended([campaign.programs / "demsolve", folder / "joints.h5", "-o", folder / "tried.h5", *options], LONGEST)
-        if tried.code in (0, 3):  # the test wants the others to be refused
-            recovered(campaign, CALLS, folder.name, folder / "joints.h5", options)
-        elif tried.code == HANGS:
-            campaign.count(CALLS, "too long", folder.name)
+    list(campaign.side_by_side(lambda folder: one_call(campaign, folder), calls[:max(left, 0)]))
+
+
+def one_call(campaign, kept):
+    """Both habits on a recorded call."""
+    name, options, folder = kept.name, json.loads((kept / "options.json").read_text()), campaign.chain.new_folder()
+    solve = [campaign.programs / "demsolve", kept / "joints.h5", "-o", folder / "result.h5"]
+    tried = ended([*solve, "--checkpoint", folder / CHECKPOINT, *options], LONGEST)
+    shutil.rmtree(folder)
+    if tried.code in (0, 3):
+        recovered(campaign, CALLS, name, kept / "joints.h5", options)
+    elif tried.code == HANGS:
+        campaign.count(CALLS, "too long", name)
+    elif tried.code == 2:  # as the test wants; or its options do not go with checkpoints
+        campaign.count(CALLS, "refused", name, tried.err)
+    else:
+        campaign.count(CALLS, "different", name, str(tried))
 
 
 def options(parser):
     parser.add_argument("--only-calls", action="store_true", help="scenes of files are left out")
+    parser.add_argument("--jobs", type=int, default=1, help="how many calls at a time (default 1)")
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["recovered", "from the beginning", "restarted", "no checkpoint", "ended before", "too long", "different"]
-    Campaign("runs of", OUTCOMES, OUTCOMES[6:], 5000, options).run(body)
+    OUTCOMES = ["recovered", "from the beginning", "restarted", "no checkpoint", "ended before", "too long", "refused", "different"]
+    Campaign("runs of", OUTCOMES, OUTCOMES[-1:], 5000, options).run(body)

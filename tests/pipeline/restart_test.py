@@ -179,6 +179,12 @@ class Restart(ChainTest):
         went_on = self.assert_killed_goes_on(SCENE, "--engine", "relaxation", kills=(3, 40, 90))
         self.assertTrue(any("in the middle of a search" in place for place in went_on), went_on)
 
+    def test_in_the_middle_of_the_in_situ_equilibrium(self):
+        """Its steps are recorded before the first row of the history."""
+        options = ("--engine", "relaxation", "--no-creep", "--step-history", 20, "--tolerance", 1e-6)
+        went_on = self.assert_killed_goes_on(SCENE, *options, kills=(3,))
+        self.assertIn("in-situ", went_on[0])
+
     def test_in_the_middle_of_a_stage(self):
         """Between two increments by dynamic relaxation: these are not made again."""
         text = changed(SCENE, "^tolerance = 1e-4", "tolerance = 1e-4\nunloading_increments = 40")
