@@ -3,11 +3,15 @@
 A test is started as `TEST.py PROGRAMS SOURCE`: the folder of the programs and that of the sources.
 """
 
+import os
 import pathlib
 import re
+import runpy
+import signal
 import subprocess
 import sys
 import tempfile
+import traceback
 import unittest
 
 import h5py
@@ -68,6 +72,45 @@ class Chain:
         """Path of the result file of a scene's text; the arguments are demsolve's."""
         joints = self.joints(text)
         return self.run("demsolve", joints, joints.with_name("result.h5"), *arguments)
+
+
+def in_a_copy(*command, cwd=None):
+    """What a Python script does that is run in a copy of this process, which has the modules that take long to load. It is ended if
+    it takes too long."""
+    import jointcreep.command
+    import jointcreep.pictures
+    import jointcreep.report  # noqa: F401
+
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        copy = os.fork()
+        if copy == 0:
+            code = 1
+            try:
+                signal.alarm(LONGEST_RUN)
+                os.dup2(out.fileno(), 1)
+                os.dup2(err.fileno(), 2)
+                os.chdir(cwd or ".")
+                sys.argv = [*map(str, command)]
+                runpy.run_path(sys.argv[0], run_name="__main__")
+                code = 0
+            except SystemExit as end:
+                if isinstance(end.code, str):
+                    print(end.code, file=sys.stderr)
+                code = end.code if isinstance(end.code, int) else int(end.code is not None)
+            except BaseException:
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(code)
+        code = os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1])
+        texts = []
+        for file in out, err:
+            file.seek(0)
+            texts.append(file.read())
+    return subprocess.CompletedProcess(command, code, *texts)
 
 
 def changed(text, pattern, replacement, count=1):

@@ -3,56 +3,17 @@
 import itertools
 import os
 import re
-import runpy
-import signal
 import subprocess
 import sys
-import tempfile
-import traceback
 import unittest.mock
 import xml.etree.ElementTree
 
 import h5py
 import numpy
 
-from chain import ChainTest, changed, datasets, main
+from chain import ChainTest, changed, datasets, in_a_copy, main
 
 PNG = b"\x89PNG\r\n\x1a\n"
-
-
-def in_a_copy(arguments):
-    """What a Python script does that is run in a copy of this process. It is ended if it takes too long."""
-    import figure  # the copy has it then  # noqa: F401
-
-    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        copy = os.fork()
-        if copy == 0:
-            code = 1
-            try:
-                signal.alarm(300)
-                os.dup2(out.fileno(), 1)
-                os.dup2(err.fileno(), 2)
-                sys.argv = arguments
-                runpy.run_path(arguments[0], run_name="__main__")
-                code = 0
-            except SystemExit as end:
-                if isinstance(end.code, str):
-                    print(end.code, file=sys.stderr)
-                code = end.code if isinstance(end.code, int) else int(end.code is not None)
-            except BaseException:
-                traceback.print_exc()
-            finally:
-                sys.stdout.flush()
-                sys.stderr.flush()
-                os._exit(code)
-        code = os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1])
-        texts = []
-        for file in out, err:
-            file.seek(0)
-            texts.append(file.read())
-    return subprocess.CompletedProcess(arguments, code, *texts)
 
 
 class Plots(ChainTest):
@@ -179,7 +140,7 @@ class Plots(ChainTest):
         loaded already what takes longer to load than a picture to draw."""
         command = [sys.executable, self.plots / f"plot_{name}.py", source, "-o", picture, *options]
         if name in self.started:
-            return in_a_copy(list(map(str, command[1:])))
+            return in_a_copy(*command[1:])
         self.started.add(name)
         return subprocess.run(command, capture_output=True, text=True, timeout=300)
 

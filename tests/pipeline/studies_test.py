@@ -27,7 +27,7 @@ import unittest.mock
 import h5py
 import numpy as np
 
-from chain import LONGEST_RUN, ChainTest, alive, datasets, main
+from chain import LONGEST_RUN, ChainTest, alive, datasets, in_a_copy, main
 
 import jointcreep
 from jointcreep import answers, failure, intervals, materials, plan, plots, report, runs, scene_keys, study_file
@@ -107,8 +107,7 @@ class Studies(ChainTest):
         return [self.chain.programs / "jointcreep", "study", study, "-o", out, "--programs", programs or self.chain.programs, *more]
 
     def study(self, study, out, *more, programs=None):
-        return subprocess.run([*map(str, self.command(study, out, *more, programs=programs))], capture_output=True, text=True,
-                              timeout=LONGEST_RUN)
+        return in_a_copy(*self.command(study, out, *more, programs=programs))
 
     def made(self, study, out, *more, programs=None):
         done = self.study(study, out, *more, programs=programs)
@@ -294,8 +293,7 @@ class Runs(Studies):
                           f"{out / 'summary.txt'}\n", said)
             continues = said.splitlines()[-1].removeprefix("jointcreep: to continue: ")
             self.assertEqual(shlex.split(continues), ["jointcreep", *command[1:]])
-            refused = subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"],
-                                     capture_output=True, text=True)
+            refused = in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html")
             self.assertEqual(refused.returncode, 2)
             self.assertIn("--finish", refused.stderr)
             self.check_finished(command, out, rows, summary)
@@ -309,7 +307,7 @@ class Runs(Studies):
         self.assertEqual((done.stdout, done.stderr), (summary.replace("ended by a signal", "ended by --finish"), ""))
         with open(out / "runs.csv", encoding="utf-8") as file:
             self.assertEqual(list(csv.reader(file)), rows)
-        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
         self.assertIn(f"warning: the answers are of {len(rows) - 1} of 12 runs", (self.folder / "r.html").read_text())
 
     def test_stopped_with_more_runs(self):
@@ -572,7 +570,7 @@ class Failures(Studies):
         self.assertIn("run 1 undecided: day 2, 1 block that moved most, 1.5 m2: demsolve: no equilibrium: why\n", text)
         self.assertIn("run 2 undecided: demsolve: no equilibrium: why\n", text)  # which left no file
         self.assertIn('run 3 failed: stage "bench", 1 moving block, 2.5 m2: demsolve: no equilibrium: why\n', text)
-        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
         page = (self.folder / "r.html").read_text()
         for what, count in (("blocks move", 1), ("undecided", 2)):
             self.assertRegex(page, f"runs without equilibrium: {what}</td><td[^>]*>{count}<")
@@ -649,7 +647,7 @@ class Failures(Studies):
         case = 'case "$PWD" in *work/*) echo "jointgen: warning: 7 percent are gone" >&2 ;; esac'
         out = self.made(self.written(NETWORKS.format(runs=2)), self.folder / "out", programs=self.programs(case, "jointgen"))
         self.assertIn("warning in 2 of 2 runs: jointgen: 7 percent are gone\n", (out / "summary.txt").read_text())
-        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
         self.assertIn("<li>warning in 2 of 2 runs: jointgen: 7 percent are gone</li>", (self.folder / "r.html").read_text())
 
     def test_time_left(self):
@@ -1043,20 +1041,24 @@ values = [1, 2, 6]
         self.assert_same(whole, self.made(study, out))
 
     def test_stop_rule(self):
-        """A study ends by its stop rule after the same runs, whether made at once or not."""
-        text = NETWORKS.format(runs=150)
+        """A study ends by its stop rule after the same runs, whether made at once or not. It looks at the rule every 10 runs here."""
+        looks = unittest.mock.patch.object(plan, "BATCH", 10)
+        looks.start()
+        self.addCleanup(looks.stop)
+        text = NETWORKS.format(runs=30)
         text = text[: text.index("[[collect]]")] + '[[collect]]\nname = "blocks"\nwhat = "blocks"\nstatistic = "number"\n'
         stop = '[stop]\nof = "blocks"\nhalf_width = {}\n'
-        out = self.made(self.written(text + stop.format(1.0)), self.folder / "out", "-j2")
-        self.assertEqual(len(rows_of(out)), 100)
+        width = 2.0
+        out = self.made(self.written(text + stop.format(width)), self.folder / "out", "-j2")
+        self.assertEqual(len(rows_of(out)), 20)
         values = np.array([float(row["blocks, number" if "blocks, number" in row else "blocks"]) for row in rows_of(out)])
-        halves = [np.diff(intervals.mean(values[:end])[1:3])[0] / 2 for end in (50, 100)]
-        self.assertGreater(halves[0], 1.0)
-        self.assertLess(halves[1], 1.0)
+        halves = [np.diff(intervals.mean(values[:end])[1:3])[0] / 2 for end in (10, 20)]
+        self.assertGreater(halves[0], width)
+        self.assertLess(halves[1], width)
         self.made(self.written(text), out)
-        self.assertEqual(len(rows_of(out)), 150)
-        self.made(self.written(text + stop.format(1.0)), out)
-        self.assertEqual(len(rows_of(out)), 100)
+        self.assertEqual(len(rows_of(out)), 30)
+        self.made(self.written(text + stop.format(width)), out)
+        self.assertEqual(len(rows_of(out)), 20)
 
         # The budget of time: the end says nothing of processes that are ended.
         slow = self.programs('case "$PWD" in */timed/work/*) exec sleep 20 ;; esac', "jointgen")
@@ -1259,8 +1261,7 @@ class BySnakemake(Studies):
 
 class Reports(Studies):
     def report(self, source, name="report.html"):
-        done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / name], capture_output=True,
-                              text=True, timeout=LONGEST_RUN)
+        done = in_a_copy(self.chain.programs / "jointcreep", "report", source, "-o", self.folder / name)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = (self.folder / name).read_text()
         self.assertNotRegex(page, r"(src|href)=.(?!data:)")  # it needs no other file
@@ -1345,8 +1346,7 @@ class Reports(Studies):
         drawn = plots.draw("histories", result, pair=[("crest", "floor")]).axes[0].lines[0].get_ydata()
         self.assertAlmostEqual(drawn[-1], 1e3 * closure, places=12)
         for pairs, code in (("floor,crest", 0), ("floor,none", 2), ("floor", 2), (" ; ", 2), ("floor,floor", 2)):
-            done = subprocess.run([self.chain.programs / "jointcreep", "report", result, "--pairs", pairs, "-o", self.folder / "p.html"],
-                                  capture_output=True, text=True)
+            done = in_a_copy(self.chain.programs / "jointcreep", "report", result, "--pairs", pairs, "-o", self.folder / "p.html")
             self.assertEqual(done.returncode, code, done.stderr)
         page = (self.folder / "p.html").read_text()
         self.assertIn("<td>floor</td><td>crest</td>", page)
@@ -1406,8 +1406,7 @@ class Reports(Studies):
     def test_refusals(self):
         for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
                              (self.chain.network(SCENE), 2)):
-            done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / "r.html"],
-                                  capture_output=True, text=True)
+            done = in_a_copy(self.chain.programs / "jointcreep", "report", source, "-o", self.folder / "r.html")
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertRegex(done.stderr, "^jointcreep: ")
             self.assertFalse((self.folder / "r.html").exists())
@@ -1620,7 +1619,7 @@ class Variables(Studies):
         moved = datasets(self.chain.run("demsolve", joints, self.folder / "r.h5"))
         floor = list(moved["/history/point"]).index("floor")
         self.assertEqual(float(row["floor y (mm)"]), 1e3 * moved["/history/displacement"][-1, floor, 1])
-        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
         page = html.unescape((self.folder / "r.html").read_text())
         for words in "2 * half, varies by half", "1 / (1 / intact + 1 / 100), varies by E", '"intact" = "2 * E"':
             self.assertIn(words, page)
