@@ -198,8 +198,10 @@ public:
                         " steps, and the unbalanced forces do not decrease enough "
                         "to stop it",
                     true, steps);
-        patience_ago_ = a_.displacement;
     }
+
+    // From here check_movement() and give_up() count displacements.
+    void begin_interval() { patience_ago_ = a_.displacement; }
 
     // The remaining displacement, by estimate, over the displacement since the start, or over a tenth of the whole
     // displacement if that is more: roots of sums over mass times length squared. Between two moments, the quotient
@@ -624,6 +626,8 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     if (keeper != nullptr)
         keeper->search_begins(pass);
     while (report.steps < settings.most_steps) {
+        if (report.steps % patience == 0)
+            relaxation.begin_interval();
         if (keeper != nullptr && report.steps % window == 0)
             keeper->search_goes_on(pass);
         const Index steps =

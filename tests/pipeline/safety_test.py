@@ -438,8 +438,14 @@ class NoEquilibrium(ChainTest):
                 self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
 
     def test_what_ends_without_an_answer_says_so(self):
-        _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "relaxation"\nmost_steps = 3000\n')
-        self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
+        """Also where the last step is one at which the solver looks for moving blocks, and begins to count anew."""
+        for steps in 3000, 5000:
+            with self.subTest(steps=steps):
+                _, path = self.failed(WEDGE.format(end="[21, 14]") + f'[equilibrium]\nengine = "relaxation"\nmost_steps = {steps}\n')
+                found = datasets(path)
+                self.assertEqual((found["/failure/moves_on"].tolist(), found["/failure/steps"].tolist()), ([0], [steps]))
+                self.assertTrue((np.linalg.norm(found["/failure/motion"], axis=1) > 0).all())
+                self.assertGreater(len(found["/failure/block"]), 0)
 
 
 if __name__ == "__main__":
