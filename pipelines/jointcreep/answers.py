@@ -357,6 +357,8 @@ def chance_words(found):
     if found is None:
         return [], []
     (one, other), r, n = found
+    if n <= 4:  # three sets can have any order by chance
+        return [f"chance correlation   not judged: {n} sets of values only"], []
     bound = 2 / math.sqrt(n)
     warning = (f'warning: by chance "{one}" and "{other}" have a rank correlation of {r:.2f} in {n} sets of values, more than the usual bound '
                f"of 2 / sqrt({n}) = {bound:.2f}: what one of them does can be taken for the other's; more sets, or a Latin hypercube, have less")

@@ -251,10 +251,15 @@ def write_answers(of_study, out, rows, why, quiet, with_histories):
 
 
 def finish(of_study, out, rows, why, quiet):
-    """Tables, answers and pictures of the runs. Returns the exit code."""
-    from . import pictures
-    rows, given, found, has_answers = write_answers(of_study, out, rows, why, quiet, of_study.histories)
-    pictures.write(of_study, rows, given, found, out)
+    """Tables, answers and pictures of the runs. Returns the exit code. A signal waits until the answers are there."""
+    try:
+        with runs.unstopped():
+            rows, given, found, has_answers = write_answers(of_study, out, rows, why, quiet, of_study.histories)
+        from . import pictures
+        pictures.write(of_study, rows, given, found, out)
+    except KeyboardInterrupt as error:
+        remove_pictures(out)
+        raise runs.Stopped(runs.exit_code_of(error), f"all answers are in {out / 'summary.txt'}; the same command draws the pictures") from None
     return 0 if has_answers else 3
 
 

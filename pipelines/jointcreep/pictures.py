@@ -116,21 +116,23 @@ def parameters(quantity, study, values, run, given, of_shares):
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name)
-        axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
+        axes.set_ylabel(f"{quantity.title()}\n(percent of runs; above: number of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):
         bars(axes, rows)
     return plot
 
 
 def share_in_classes(axes, of_runs, failed, are_independent):
-    """Share of failed runs in classes of a parameter that have about as many runs each, with its interval if runs are independent."""
+    """Share of failed runs in classes of a parameter that have about as many runs each, with their number, and the interval of the share if
+    runs are independent."""
     edges = np.unique(np.quantile(of_runs, np.linspace(0, 1, CLASSES + 1)))
     place = np.clip(np.searchsorted(edges, of_runs, side="right") - 1, 0, max(0, len(edges) - 2))
     of_classes = [failed[place == one] for one in range(len(edges) - 1)]
-    shares = [100 * each.mean() for each in of_classes]
+    shares = [100 * each.mean() if len(each) else 0.0 for each in of_classes]
     axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
-    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes if are_independent else []):
-        if not len(each):
+    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes):
+        axes.text(middle, 1.0, f"{len(each)}", transform=axes.get_xaxis_transform(), ha="center", va="bottom", fontsize=5, color="0.35")
+        if not are_independent or not len(each):
             continue
         _, low, high = intervals.probability(int(each.sum()), len(each))
         axes.plot([middle, middle], [100 * low, 100 * high], color=figure.COLORS[1], linewidth=1.0, marker="_", markersize=4)

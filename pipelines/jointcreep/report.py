@@ -362,6 +362,12 @@ def what_varies(study, scene):
     return parts
 
 
+def of_stable_runs(statistic, quantity, rows):
+    """Words of a statistic that leaves out runs without equilibrium, if there are some."""
+    leaves_out = quantity.what == "displacement" and not statistic.startswith("probability") and any(row["no equilibrium"] for row in rows)
+    return f"{statistic}, of the runs with an equilibrium" if leaves_out else statistic
+
+
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
     from . import answers  # takes long to load
@@ -372,7 +378,7 @@ def of_study(out, programs, folder):
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     parts = ["<h2>The study</h2>", table(["", ""], [
-        ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
+        ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", f"{len(rows)} of {study.design.runs}" if len(rows) < study.design.runs and not study.design.directions else len(rows)),
         ("runs with a result", len(rows) - len(failed)),
         *((f"runs without equilibrium: {what}", sum(row["no equilibrium"] == what for row in rows)) for what in (MOVING, UNDECIDED)),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
@@ -394,7 +400,7 @@ def of_study(out, programs, folder):
             parts.append("<p>No run has this value.</p>")
             continue
         parts.append(table(["", study.design.counted(), "value", "from", "to"],
-                           [(answers.with_unit(row["statistic"], quantity), row["runs"], row["value"], row["low"], row["high"]) for row in of]))
+                           [(of_stable_runs(answers.with_unit(row["statistic"], quantity), quantity, rows), row["runs"], row["value"], row["low"], row["high"]) for row in of]))
         of_shares = [(row["input"], row["measure"], row["value"], row["low"], row["high"]) for row in shares
                      if row["quantity"] == quantity.label()]
         if of_shares:

@@ -85,6 +85,24 @@ def stoppable(stop=raise_stopped):
 
 
 @contextlib.contextmanager
+def unstopped():
+    """Signals that stop a study wait until the end of this, which takes some moments only."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came = []
+    before = {number: signal.signal(number, lambda number, _: came.append(number)) for number in STOPS
+              if signal.getsignal(number) is not signal.SIG_IGN}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if came:
+        signal.raise_signal(came[0])
+
+
+@contextlib.contextmanager
 def locked(out, kind="study"):
     """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and
     no such file is of someone else. The file, and a folder that is new, go again if the input is refused before anything else is

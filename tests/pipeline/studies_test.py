@@ -23,6 +23,7 @@ import tomllib
 import types
 import unittest
 import unittest.mock
+import warnings
 
 import h5py
 import numpy as np
@@ -310,6 +311,26 @@ class Runs(Studies):
         self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
         self.assertIn(f"warning: the answers are of {len(rows) - 1} of 12 runs", (self.folder / "r.html").read_text())
 
+    def test_stopped_after_the_last_run(self):
+        """Tables and answers are there; the same command draws the pictures."""
+        study, out = self.written(NETWORKS.format(runs=3)), self.folder / "out"
+        words = ["study", str(study), "-o", str(out), "-q"]
+        write, is_stopped = command_line.write_answers, []
+
+        def write_and_stop(*arguments):
+            if not is_stopped:
+                is_stopped.append(signal.raise_signal(signal.SIGTERM))
+            return write(*arguments)
+
+        said = io.StringIO()
+        with unittest.mock.patch.object(command_line, "write_answers", write_and_stop), contextlib.redirect_stderr(said):
+            self.assertEqual(command_line.main(words, "0.1.0", self.chain.programs), 128 + signal.SIGTERM)
+        self.assertIn(f"interrupted: all answers are in {out / 'summary.txt'}; the same command draws the pictures\n", said.getvalue())
+        self.assertIn("runs                 3\n", (out / "summary.txt").read_text())
+        self.assertEqual((len(rows_of(out)), list(out.glob("*.png")), (out / "pictures.json").exists()), (3, [], False))
+        self.assertEqual(command_line.main(words, "0.1.0", self.chain.programs), 0)
+        self.assertTrue((out / "pictures.json").exists())
+
     def test_stopped_with_more_runs(self):
         """Pictures and bands of the runs of an earlier call go, as the tables are of more runs; --finish makes them again."""
         text = "histories = true\n" + NETWORKS.split("[[collect]]\nname")[0]
@@ -582,6 +603,19 @@ class Failures(Studies):
         self.assert_same(self.made(study, self.folder / "whole"),
                          self.made(study, self.folder / "out", programs=self.programs(case)))
 
+    def test_failures_over_few_values(self):
+        """Classes of a parameter without a run have no share; the numbers of runs are above."""
+        from jointcreep import pictures
+        axes = pictures.figure.plt.figure().add_subplot()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            pictures.share_in_classes(axes, np.array([30.0, 30, 30, 30, 37, 38]), np.array([0.0, 1, 0, 0, 1, 1]), True)
+        counts = [int(text.get_text()) for text in axes.texts]
+        self.assertEqual(sum(counts), 6)
+        self.assertEqual(len(counts), len(axes.patches))
+        self.assertIn(0, counts)
+        pictures.figure.plt.close(axes.figure)
+
     def test_lines_of_failures(self):
         """Short ones, twenty at most, and of both kinds of runs without equilibrium; warnings of one kind are counted together."""
         study = study_file.read(self.written(NETWORKS.format(runs=30)))
@@ -624,6 +658,7 @@ class Failures(Studies):
 
     def test_chance_correlation(self):
         """Of few sets of values; more than 2 / sqrt(N) is a warning. Pairs with a [[correlation]] do not count."""
+        self.assertEqual(answers.chance_words((("a", "b"), 1.0, 3)), (["chance correlation   not judged: 3 sets of values only"], []))
         vary = "".join(f'[[vary]]\nname = "{name}"\nkey = "{key}"\nvalues = [1, 2, 3, 4, 5, 6]\n' for name, key in (
             ("a", "joint_material.joint.cohesion_MPa"), ("b", "rock.rock.youngs_modulus_GPa"), ("c", "joint_material.joint.tensile_strength_MPa")))
         study = study_file.read(self.written(NETWORKS.format(runs=8) + vary))
