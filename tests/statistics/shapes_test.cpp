@@ -119,6 +119,33 @@ TEST(Nodes, OfAFewTraces)
     EXPECT_DOUBLE_EQ(nodes.connections_per_branch(), 7 / 6.5);
 }
 
+// An end near a border of the grid at a trace: the trace is in the cell of the end, too. Once the trace is steep, and there is a border of
+// rows, too; once it ends just before the border of columns.
+TEST(Nodes, AtBordersOfTheGrid)
+{
+    const Polygon outline = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    const double border = std::sqrt(10 * 10 / (2 * 2 + 1.)), tolerance = .01; // of a grid for two traces
+    const Vector2d steep(.4, 4);
+    for (const double side : {1, -1}) {
+        const Vector2d end(border + side * .0005, border - side * .05), across(side * 4, 0);
+        Joints at_a_steep_one, end_to_end;
+        add_trace(at_a_steep_one, end - steep, end + steep);
+        add_trace(at_a_steep_one, end, end + across);
+        const Nodes nodes = count_nodes(at_a_steep_one, outline, tolerance);
+        EXPECT_EQ(nodes.x, 0) << side;
+        EXPECT_EQ(nodes.y, 1) << side;
+        EXPECT_EQ(nodes.i, 3) << side;
+
+        const Vector2d gap(side * .001, 0), place(border, 6);
+        add_trace(end_to_end, place - across, place - gap);
+        add_trace(end_to_end, place + gap, place + across + Vector2d(0, 2));
+        const Nodes two = count_nodes(end_to_end, outline, tolerance);
+        EXPECT_EQ(two.x, 0) << side;
+        EXPECT_EQ(two.y, 2) << side;
+        EXPECT_EQ(two.i, 2) << side;
+    }
+}
+
 // The grid finds what all pairs find.
 TEST(Nodes, AreThoseOfAllPairs)
 {
@@ -180,6 +207,32 @@ TEST(Blocks, TheirNumberHasTheErrorOfTwoCounts)
     EXPECT_NEAR(rows.target[i], (1 + n) * (1 + m), 1e-9);
     EXPECT_NEAR(std::log(rows.high[i] / rows.achieved[i]), 1.96 * error, 1e-9);
     EXPECT_NEAR(std::log(rows.achieved[i] / rows.low[i]), 1.96 * error, 1e-9);
+}
+
+// Lines of one set with angles a even between -w and w cut a box into 1 + p + c blocks: with a frequency f, a width of 100 |sin a| + 60
+// |cos a| across a line, and f / cos a lines of it a metre, p = f (60 - 100 log(cos w) / w); two lines cross where
+// |sin(a - b)| / (cos a cos b) = |tan a - tan b|, c = area f^2 / 2 times its mean.
+TEST(Blocks, TheirNumberWithAnglesThatScatter)
+{
+    Scene scene = examples()[1].scene;
+    scene.outline = box();
+    scene.cutting = {1e-6, 1e-6};
+    const double w = 40 * deg, f = .25;
+    scene.joint_sets[0].persistence = 1;
+    scene.joint_sets[0].trace_angle = uniform_law(-w, w);
+    scene.joint_sets[0].spacing = {Kind::negative_exponential, 1 / f, 1 / f};
+    Network network;
+    network.joints = sampling::sample_joints(scene, 3, 0);
+    network.blocks = blocks::cut(scene, network.joints);
+    const Statistics rows = statistics_of(scene, network);
+    double mean = 0; // of |tan a - tan b|
+    const int n = 400;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            mean += std::abs(std::tan(w * (2 * i + 1 - n) / n) - std::tan(w * (2 * j + 1 - n) / n)) / (n * n);
+    const double pieces = f * (60 - 100 * std::log(std::cos(w)) / w), crossings = 6000 * f * f / 2 * mean;
+    EXPECT_NEAR(rows.target[row_of(rows, "blocks", "number")], 1 + pieces + crossings,
+                2e-3 * (1 + pieces + crossings));
 }
 
 // Two sets without bridges: number of blocks and of crossings, mean area, on average what they should be
