@@ -2,8 +2,8 @@
 
 usage: jointcreep run SCENE.toml -o OUT/ [options] [-- OPTIONS OF DEMSOLVE]
 usage: jointcreep study STUDY.toml -o OUT/ [options]
-usage: jointcreep report OUT/ -o REPORT.html [options]
-usage: jointcreep report RESULT.h5 -o REPORT.html [options]
+usage: jointcreep report OUT/ ... -o REPORT.html [options]
+usage: jointcreep report RESULT.h5 ... -o REPORT.html [options]
 usage: jointcreep fit TRACES -o SETS.toml --window WINDOW [options]
 
 Description:
@@ -14,7 +14,7 @@ study makes the runs of a study file, and writes their results and statistics: r
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. The
 same command continues an interrupted study; until then tables and answers have the runs that have ended. Two studies never work in one
 folder at once.
-report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
+report writes one page of HTML, with all pictures in it, for studies and result files of demsolve, one or several.
 fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CSV, GeoPackage, Shapefile, DXF), and writes them as
 [[joint_set]]. Traces that the window cuts are censored. The laws are those of all joints, not of the traces in the window.
 
@@ -25,6 +25,7 @@ Options:
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml
   --realization R           run: which of the seed's networks (default 0)
   --pairs PAIRS             report: pairs of points for closures: "left wall,right wall; crown,floor" (default: all)
+  --notes TEXT              report: a text file that comes first: paragraphs between blank lines, # headings, - lists
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
@@ -84,6 +85,7 @@ class Subcommand:
     run: object  # run(source, options, beside) makes it, and returns the exit code
     words: dict  # its own options: word on the command line, name in `options`
     writes_text: bool = False  # -o - is possible: standard output
+    takes_many: bool = False  # inputs; those after the first as options["others"]
     passes_on: bool = False  # what follows "--" to demsolve, as options["rest"]
 
 
@@ -97,7 +99,7 @@ def options_of(arguments):
     if name not in SUBCOMMANDS:
         raise NotWanted(f'unknown subcommand "{name}"; expected {" or ".join(SUBCOMMANDS)}\n{usage()}')
     known = {**OF_ALL, **SUBCOMMANDS[name].words}
-    found, source = {}, None
+    found, source, others = {}, None, []
     if SUBCOMMANDS[name].passes_on:
         end = rest.index("--") if "--" in rest else len(rest)
         rest, found["rest"] = rest[:end], rest[end + 1:]
@@ -118,6 +120,8 @@ def options_of(arguments):
                     found[option], rest = ",".join([found[option], *rest[:3]]), rest[3:]
             else:
                 raise NotWanted(f"{word} has no value")
+        elif source is not None and not word.startswith("-") and SUBCOMMANDS[name].takes_many:
+            others.append(pathlib.Path(word))
         elif word.startswith("-") or source is not None:
             near = difflib.get_close_matches(word, known, 1) if word.startswith("--") else []
             raise NotWanted(f'unknown option or second input "{word}"' + (f"; did you mean {near[0]}?" if near else "") + f"\n{usage()}")
@@ -130,7 +134,7 @@ def options_of(arguments):
     jobs = found.get("jobs", "1")
     if not jobs.isdecimal() or not 1 <= int(jobs) <= 10000:
         raise NotWanted(f'--jobs is "{jobs}"; expected a whole number from 1 to 10000')
-    return SUBCOMMANDS[name], pathlib.Path(source), {**found, "jobs": int(jobs)}
+    return SUBCOMMANDS[name], pathlib.Path(source), {**found, "jobs": int(jobs), "others": others}
 
 
 def is_number(word):
@@ -268,7 +272,7 @@ def report(source, options, beside):
     from . import report as page
     output = options["output"]
     page.write(source, output if output == files.STANDARD_OUTPUT else pathlib.Path(output), programs_in(options.get("programs"), beside),
-               options.get("pairs"), window_of(options))
+               options.get("pairs"), window_of(options), options["others"], pathlib.Path(options["notes"]) if "notes" in options else None)
     return 0
 
 
@@ -281,7 +285,7 @@ def fit(source, options, beside):
 SUBCOMMANDS = {
     "run": Subcommand(run, {"--realization": "realization", "--window": "window", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--finish": "finish", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
-    "report": Subcommand(report, {"--pairs": "pairs", "--window": "window"}, writes_text=True),
+    "report": Subcommand(report, {"--pairs": "pairs", "--window": "window", "--notes": "notes"}, writes_text=True, takes_many=True),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),
 }
 

@@ -427,9 +427,48 @@ def of_study(out, programs, folder):
     return study.title or f"Study of {scene.get('title', out.name)}", parts
 
 
-def write(source, output, programs, pairs=None, window=None):
-    """Writes the page of a result file or of a study's folder. output: a Path, or "-": standard output. pairs: of the points of a result,
-    as relative_displacements(). window: of its pictures, as of_run()."""
+def of_notes(path):
+    """Parts of the page with the user's own text: paragraphs between blank lines, headings after #, lists of lines that begin with -."""
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise NotWanted(f"{path}: is no text in UTF-8; expected paragraphs, with blank lines between them") from None
+    parts = []
+    for lines in (paragraph.splitlines() for paragraph in re.split(r"\n\s*\n", text.strip()) if paragraph):
+        while lines and lines[0].startswith("#"):
+            parts.append(f"<h2>{escaped(lines.pop(0).lstrip('#').strip())}</h2>")
+        if lines and all(line.startswith("- ") for line in lines):
+            parts.append("<ul>" + "".join(f"<li>{escaped(line[2:])}</li>" for line in lines) + "</ul>")
+        elif lines:
+            parts.append(f"<p>{escaped(' '.join(lines))}</p>")
+    return parts
+
+
+def write(source, output, programs, pairs=None, window=None, others=(), notes=None):
+    """Writes the page of a result file or of a study's folder, or one page of several: those in `others`, too. output: a Path, or "-":
+    standard output. pairs: of the points of a result, as relative_displacements(). window: of its pictures, as of_run(). notes: a Path of
+    the text that comes first."""
+    sources = [source, *others]
+    for one in sources:
+        check(one, pairs, window)
+    read = [one for one in [*sources, notes] if one and not one.is_dir()]
+    if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or any(os.path.samefile(output, one) for one in read)):
+        raise NotWanted(f"{output}: is a folder, or a file that is read; expected the name of a report, such as report.html")
+    first = of_notes(notes) if notes else []
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        found = [of_study(one.resolve(), programs, pathlib.Path(folder)) if one.is_dir()
+                 else of_run(one.resolve(), programs, pathlib.Path(folder), pairs, window) for one in sources]
+    if len(found) == 1:
+        (title, parts), = found
+    else:
+        title = f"Report of {len(found)} results"
+        first.append("<ol>" + "".join(f"<li>{escaped(its_title)}</li>" for its_title, _ in found) + "</ol>")
+        parts = [part for number, (its_title, its_parts) in enumerate(found, 1) for part in (f"<h1>{number}. {escaped(its_title)}</h1>", *its_parts)]
+    files.write_output(output, page(title, [*first, *parts]))
+
+
+def check(source, pairs, window):
+    """Raises NotWanted if there can be no page of it."""
     is_study = source.is_dir()
     if is_study and pairs:
         raise NotWanted("--pairs is for result files; a study collects a displacement with relative_to")
@@ -452,9 +491,3 @@ def write(source, output, programs, pairs=None, window=None):
                 from None
         if kind not in (b"jointcreep result", "jointcreep result"):
             raise NotWanted(f"{source}: is not a result file of demsolve; expected one, or a study's folder")
-    if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or not is_study and os.path.samefile(output, source)):
-        raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
-    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
-        path, folder = source.resolve(), pathlib.Path(folder)
-        title, parts = of_study(path, programs, folder) if is_study else of_run(path, programs, folder, pairs, window)
-    files.write_output(output, page(title, parts))

@@ -1438,6 +1438,30 @@ class Reports(Studies):
                 (parameter,) = study_file.read(self.written(study + law)).parameters
                 self.assertEqual(materials.in_runs(parameter, value), words)
 
+    def test_of_several_with_notes(self):
+        """One page, in the order of the command line; what comes first is text."""
+        joints = self.chain.joints(SCENE.replace("[section]", 'title = "The bench"\n[section]', 1))
+        result = self.chain.run("demsolve", joints, joints.with_name("r.h5"))
+        out = self.made(self.written('title = "Three networks"\n' + NETWORKS.format(runs=3)), self.folder / "out")
+        notes, made = self.folder / "notes.txt", self.folder / "all.html"
+        notes.write_text("# Summary\n\nThe slope <stands>\nwith both cohesions.\n\n- first\n- second & last\n")
+        words = [self.chain.programs / "jointcreep", "report", out, result, "-o", made, "--notes", notes]
+        done = in_a_copy(*words)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = made.read_text()
+        self.assertNotRegex(page, r"(src|href)=.(?!data:)")
+        at = [page.index(text) for text in ("<h1>Report of 2 results</h1>", "<h2>Summary</h2>", "<p>The slope &lt;stands&gt; with both cohesions.</p>",
+                                            "<ul><li>first</li><li>second &amp; last</li></ul>", "<ol><li>Three networks</li><li>The bench</li></ol>",
+                                            "<h1>1. Three networks</h1>", "<h2>Answers</h2>", "<h1>2. The bench</h1>", "<h2>Histories</h2>")]
+        self.assertEqual(at, sorted(at))
+        notes.write_bytes(b"\xff\xfe")
+        for more, expected in ((["-o", notes, "--notes", notes], "a file that is read"), (["-o", result], "a file that is read"),
+                               (["-o", made, "--notes", notes], "is no text in UTF-8"), (["-o", made, "--pairs", "crest,floor"], "is for result files")):
+            done = in_a_copy(*words[:4], *more)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(expected, done.stderr)
+        self.assertEqual(made.read_text(), page)
+
     def test_refusals(self):
         for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
                              (self.chain.network(SCENE), 2)):
