@@ -115,8 +115,8 @@ def parameters(quantity, study, values, run, given, of_shares):
             share_in_classes(axes, of_runs, values, are_independent=study.design.kind != "networks x parameters")
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
-        axes.set_xlabel(study.parameters[column].name)
-        axes.set_ylabel(f"{quantity.title()}\n(percent of runs; above: number of runs)" if quantity.what == "failed" else quantity.title())
+        axes.set_xlabel(study.parameters[column].name + "\n(above: number of runs)" * (quantity.what == "failed"))
+        axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):
         bars(axes, rows)
     return plot
