@@ -29,6 +29,7 @@ NOT_LINEAR = "curvature and interaction of parameters"  # what no parameter expl
 SETS_EACH = 4  # sets of parameters for each parameter, so that their share is divided
 OF_STABLE, OR_NONE = ", of stable runs", " or no equilibrium"  # ends of names of probabilities
 FEWEST = 10  # values from which convergence is shown
+FEWEST_OF_BOTH = 5  # failures and stable runs, for the rank correlation of failed
 FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 20  # failed runs that the summary lists
@@ -309,6 +310,8 @@ def rank_correlations(study, rows, given, at):
     of Bonett and Wright (2000). Of networks x parameters with the effect of each set of parameters (mean over networks), because runs
     are not independent."""
     values, run = values_of(study, rows, at)
+    if study.quantities[at].what == "failed" and min(np.sum(values > 0.5), np.sum(values < 0.5)) < FEWEST_OF_BOTH:
+        return []
     table = crossed_table(study, values, run)
     if study.design.kind == "networks x parameters":
         values, run = (intervals.additive(table)[1], sets_of(study, run)) if table is not None else ([], [])
@@ -581,6 +584,9 @@ def early_words(study, rows, why):
     """A warning of answers that runs are missing from."""
     if why in ("", BY_STOP_RULE) or study.design.directions:
         return []
+    if not rows:
+        return ["warning: run 0 has not ended, so there are no answers: they are of the runs from 0 on without a gap. Runs that take long are "
+                "often near failure. The same command continues; with --finish the answers are of all runs that have ended"]
     return [f"warning: the answers are of {len(rows)} of {study.design.runs} runs. Runs that take long may be missing more often than others"]
 
 

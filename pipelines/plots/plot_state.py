@@ -154,6 +154,8 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
         axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
         draw_borders(section, axes)
         where = "this part of the section" if section.window else "this state"
+        if "/failure" in file:
+            where = "the last equilibrium"  # the picture may have arrows of moving blocks
         return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label=f"no displacement in {where}")]
     low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,

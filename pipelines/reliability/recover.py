@@ -16,7 +16,8 @@ from kills import Job
 CHECKPOINT = "kept.h5"
 EVERY = "0.0005"
 CALLS = "calls by tests"
-NOT_RECORDED = ("campaign", "documentation", "install", "standard_output")  # tests of the tests, of pages, of files with other names
+# Tests of the tests, of pages, of files with other names, and those that wait for programs which they stop.
+NOT_RECORDED = ("campaign", "documentation", "install", "run_", "standard_output", "studies")
 LONGEST_TEST = 1200  # s
 RECORDER = """#!{python}
 import hashlib, json, os, pathlib, sys

@@ -37,7 +37,7 @@ class Install(ChainTest):
         source = self.chain.source
         data = [path.relative_to(source) for path in (source / "data").rglob("*") if path.is_file()]
         pages = [path.relative_to(source) for end in ("md", "png", "svg") for path in (source / "docs").rglob(f"*.{end}")]
-        of_doc = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE", "copyright", *map(str, pages)]
+        of_doc = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE", "copyright", *map(str, pages)]
         headers = [path for folder in ("model", "store") for path in (self.prefix / "include/jointcreep" / folder).glob("*.hpp")]
         libraries = ["store", "fields", "keys", "rock", "joint", "boundary", "creep", "model"]
         configs = ["config", "config-version", "targets", "targets-release"]
