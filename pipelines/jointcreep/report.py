@@ -474,6 +474,9 @@ def check(source, pairs, window):
         raise NotWanted("--pairs is for result files; a study collects a displacement with relative_to")
     if is_study and window:
         raise NotWanted("--window is for result files; a study's report has no pictures of states")
+    if is_study and (source / "summary.txt").exists() and not (source / "pictures.json").exists():
+        raise NotWanted(f"{source}: the study has no pictures yet; the same command draws them: jointcreep study STUDY.toml -o {source}, with "
+                        "--finish if runs are missing")
     if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
         raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}; "
                         "with --finish it ends with the runs that it has")
