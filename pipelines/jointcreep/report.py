@@ -377,8 +377,9 @@ def of_study(out, programs, folder):
     failed = [row for row in rows if row["exit code"] != "0"]
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
+    is_early = len(rows) < study.design.runs and not study.design.directions
     parts = ["<h2>The study</h2>", table(["", ""], [
-        ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", f"{len(rows)} of {study.design.runs}" if len(rows) < study.design.runs and not study.design.directions else len(rows)),
+        ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", f"{len(rows)} of {study.design.runs}" if is_early else len(rows)),
         ("runs with a result", len(rows) - len(failed)),
         *((f"runs without equilibrium: {what}", sum(row["no equilibrium"] == what for row in rows)) for what in (MOVING, UNDECIDED)),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
@@ -399,8 +400,9 @@ def of_study(out, programs, folder):
         if not of:
             parts.append("<p>No run has this value.</p>")
             continue
+        statistics = [of_stable_runs(answers.with_unit(row["statistic"], quantity), quantity, rows) for row in of]
         parts.append(table(["", study.design.counted(), "value", "from", "to"],
-                           [(of_stable_runs(answers.with_unit(row["statistic"], quantity), quantity, rows), row["runs"], row["value"], row["low"], row["high"]) for row in of]))
+                           [(words, row["runs"], row["value"], row["low"], row["high"]) for words, row in zip(statistics, of)]))
         of_shares = [(row["input"], row["measure"], row["value"], row["low"], row["high"]) for row in shares
                      if row["quantity"] == quantity.label()]
         if of_shares:
@@ -455,15 +457,15 @@ def write(source, output, programs, pairs=None, window=None, others=(), notes=No
     if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or any(os.path.samefile(output, one) for one in read)):
         raise NotWanted(f"{output}: is a folder, or a file that is read; expected the name of a report, such as report.html")
     first = of_notes(notes) if notes else []
-    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
-        found = [of_study(one.resolve(), programs, pathlib.Path(folder)) if one.is_dir()
-                 else of_run(one.resolve(), programs, pathlib.Path(folder), pairs, window) for one in sources]
-    if len(found) == 1:
-        (title, parts), = found
-    else:
-        title = f"Report of {len(found)} results"
-        first.append("<ol>" + "".join(f"<li>{escaped(its_title)}</li>" for its_title, _ in found) + "</ol>")
-        parts = [part for number, (its_title, its_parts) in enumerate(found, 1) for part in (f"<h1>{number}. {escaped(its_title)}</h1>", *its_parts)]
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as name:
+        folder = pathlib.Path(name)
+        found = [of_study(one.resolve(), programs, folder) if one.is_dir() else of_run(one.resolve(), programs, folder, pairs, window)
+                 for one in sources]
+    title, parts = found[0]
+    if others:
+        title, parts = f"Report of {len(found)} results", ["<ol>" + "".join(f"<li>{escaped(of_one)}</li>" for of_one, _ in found) + "</ol>"]
+        for number, (of_one, its_parts) in enumerate(found, 1):
+            parts += [f"<h1>{number}. {escaped(of_one)}</h1>", *its_parts]
     files.write_output(output, page(title, [*first, *parts]))
 
 

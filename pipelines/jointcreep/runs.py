@@ -69,35 +69,31 @@ def raise_stopped(number, _):
 
 
 @contextlib.contextmanager
-def stoppable(stop=raise_stopped):
-    """SIGTERM and SIGHUP stop a study as Ctrl-C does, or call `stop`. Signals that are ignored (nohup) stay so. In a thread of another
-    program there is nothing to do: signals are for its first one."""
+def handled(numbers, handler):
+    """Signals of these numbers call the handler. Those that are ignored (nohup) stay so. In a thread of another program there is
+    nothing to do: signals are for its first one."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
-              if signal.getsignal(number) is not signal.SIG_IGN}
+    before = {number: signal.signal(number, handler) for number in numbers if signal.getsignal(number) is not signal.SIG_IGN}
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)
+
+
+def stoppable(stop=raise_stopped):
+    """SIGTERM and SIGHUP stop a study as Ctrl-C does, or call `stop`."""
+    return handled((signal.SIGTERM, signal.SIGHUP), stop)
 
 
 @contextlib.contextmanager
 def unstopped():
     """Signals that stop a study wait until the end of this, which takes some moments only."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
     came = []
-    before = {number: signal.signal(number, lambda number, _: came.append(number)) for number in STOPS
-              if signal.getsignal(number) is not signal.SIG_IGN}
-    try:
+    with handled(STOPS, lambda number, _: came.append(number)):
         yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
     if came:
         signal.raise_signal(came[0])
 

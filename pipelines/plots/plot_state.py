@@ -153,9 +153,8 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
     if largest == 0 and not limits:
         axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
         draw_borders(section, axes)
-        where = "this part of the section" if section.window else "this state"
-        if "/failure" in file:
-            where = "the last equilibrium"  # the picture may have arrows of moving blocks
+        # A picture of a failure may have arrows of moving blocks.
+        where = "the last equilibrium" if "/failure" in file else "this part of the section" if section.window else "this state"
         return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label=f"no displacement in {where}")]
     low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,

@@ -129,18 +129,15 @@ class Campaign:
     def count(self, subject, outcome, case="", what="", files=None, times=1):
         """Counts a trial. Of a fault says which and what; `files` is a folder to be kept."""
         with self.lock:
-            self.counted(subject, outcome, case, what, files, times)
-
-    def counted(self, subject, outcome, case, what, files, times):
-        self.counts.setdefault(subject, collections.Counter())[outcome] += times
-        print(f"{subject}\t{case}\t{outcome}\t{what.strip()}", file=self.log, flush=True)
-        if outcome in self.faults:
-            print(f"{subject}, trial {case} of seed {self.seed}: {outcome}: {what}", flush=True)
-            if files:
-                shutil.copytree(files, self.out / "faults" / re.sub(r"\W+", "-", f"{self.name}-{subject}-{case}"),
-                                dirs_exist_ok=True, symlinks=True)
-        if time.monotonic() - self.written > WRITING:
-            self.write(f"{self.about_n}, not ended")
+            self.counts.setdefault(subject, collections.Counter())[outcome] += times
+            print(f"{subject}\t{case}\t{outcome}\t{what.strip()}", file=self.log, flush=True)
+            if outcome in self.faults:
+                print(f"{subject}, trial {case} of seed {self.seed}: {outcome}: {what}", flush=True)
+                if files:
+                    shutil.copytree(files, self.out / "faults" / re.sub(r"\W+", "-", f"{self.name}-{subject}-{case}"),
+                                    dirs_exist_ok=True, symlinks=True)
+            if time.monotonic() - self.written > WRITING:
+                self.write(f"{self.about_n}, not ended")
 
     def run(self, body):
         """Runs the campaign: calls body(self), writes the table, ends the program."""

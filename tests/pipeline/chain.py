@@ -49,6 +49,10 @@ class Chain:
         command = [self.programs / program, *map(str, arguments)]
         return subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_RUN, cwd=self.folder)
 
+    def jointcreep(self, *arguments, cwd=None):
+        """What jointcreep does in a copy of this process, whatever its exit code."""
+        return in_a_copy(self.programs / "jointcreep", *arguments, cwd=cwd)
+
     def run(self, program, source, output, *arguments):
         """The output of a program that must succeed."""
         done = self.answer(program, source, "-o", output, *arguments)

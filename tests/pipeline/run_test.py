@@ -4,7 +4,6 @@ import base64
 import html
 import json
 import os
-import re
 import shlex
 import shutil
 import signal
@@ -17,7 +16,7 @@ import matplotlib.quiver
 import numpy as np
 from matplotlib.collections import PolyCollection
 
-from chain import ChainTest, alive, changed, datasets, in_a_copy, main
+from chain import ChainTest, alive, changed, datasets, main
 from jointcreep import plots
 from jointcreep import run as of_scene
 from suited import state_fields, suited
@@ -90,7 +89,7 @@ class Run(ChainTest):
 
     def called(self, *arguments, scene="scene.toml", out="out", cwd=None):
         """What jointcreep run does in the folder of the test."""
-        return in_a_copy(self.chain.programs / "jointcreep", "run", scene, "-o", out, *arguments, cwd=cwd or self.folder)
+        return self.chain.jointcreep("run", scene, "-o", out, *arguments, cwd=cwd or self.folder)
 
     def made(self, *arguments, code=0, **more):
         """Names of the files that a call made, by the commands that it shows."""
@@ -256,7 +255,7 @@ class Run(ChainTest):
         self.assertIn(f"area {area.sum():.4g} m2 in all: {area.sum():.4g} m3 for each metre along the strike", page)
         self.assertIn(f'<td class="number">{failed["/failure/block"][0]}</td><td class="number">{area[0]:.4g}</td>', page)
         os.rename(self.out / "result.failed.h5", self.folder / "away.h5")
-        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", self.out / "result.h5", "-o", self.folder / "r.html").returncode, 0)
+        self.assertEqual(self.chain.jointcreep("report", self.out / "result.h5", "-o", self.folder / "r.html").returncode, 0)
         self.assertIn("What moves at failure is in result.failed.h5, which is not beside this result", (self.folder / "r.html").read_text())
         os.rename(self.folder / "away.h5", self.out / "result.failed.h5")
         self.assertEqual(plots.draw("histories", self.out / "result.h5")._suptitle.get_text(), f"strengths / {low:.4g}")

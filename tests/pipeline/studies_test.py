@@ -294,7 +294,7 @@ class Runs(Studies):
                           f"{out / 'summary.txt'}\n", said)
             continues = said.splitlines()[-1].removeprefix("jointcreep: to continue: ")
             self.assertEqual(shlex.split(continues), ["jointcreep", *command[1:]])
-            refused = in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html")
+            refused = self.chain.jointcreep("report", out, "-o", self.folder / "r.html")
             self.assertEqual(refused.returncode, 2)
             self.assertIn("--finish", refused.stderr)
             self.check_finished(command, out, rows, summary)
@@ -308,7 +308,7 @@ class Runs(Studies):
         self.assertEqual((done.stdout, done.stderr), (summary.replace("ended by a signal", "ended by --finish"), ""))
         with open(out / "runs.csv", encoding="utf-8") as file:
             self.assertEqual(list(csv.reader(file)), rows)
-        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
+        self.assertEqual(self.chain.jointcreep("report", out, "-o", self.folder / "r.html").returncode, 0)
         self.assertIn(f"warning: the answers are of {len(rows) - 1} of 12 runs", (self.folder / "r.html").read_text())
 
     def test_stopped_after_the_last_run(self):
@@ -591,7 +591,7 @@ class Failures(Studies):
         self.assertIn("run 1 undecided: day 2, 1 block that moved most, 1.5 m2: demsolve: no equilibrium: why\n", text)
         self.assertIn("run 2 undecided: demsolve: no equilibrium: why\n", text)  # which left no file
         self.assertIn('run 3 failed: stage "bench", 1 moving block, 2.5 m2: demsolve: no equilibrium: why\n', text)
-        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
+        self.assertEqual(self.chain.jointcreep("report", out, "-o", self.folder / "r.html").returncode, 0)
         page = (self.folder / "r.html").read_text()
         for what, count in (("blocks move", 1), ("undecided", 2)):
             self.assertRegex(page, f"runs without equilibrium: {what}</td><td[^>]*>{count}<")
@@ -682,7 +682,7 @@ class Failures(Studies):
         case = 'case "$PWD" in *work/*) echo "jointgen: warning: 7 percent are gone" >&2 ;; esac'
         out = self.made(self.written(NETWORKS.format(runs=2)), self.folder / "out", programs=self.programs(case, "jointgen"))
         self.assertIn("warning in 2 of 2 runs: jointgen: 7 percent are gone\n", (out / "summary.txt").read_text())
-        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
+        self.assertEqual(self.chain.jointcreep("report", out, "-o", self.folder / "r.html").returncode, 0)
         self.assertIn("<li>warning in 2 of 2 runs: jointgen: 7 percent are gone</li>", (self.folder / "r.html").read_text())
 
     def test_time_left(self):
@@ -1077,9 +1077,7 @@ values = [1, 2, 6]
 
     def test_stop_rule(self):
         """A study ends by its stop rule after the same runs, whether made at once or not. It looks at the rule every 10 runs here."""
-        looks = unittest.mock.patch.object(plan, "BATCH", 10)
-        looks.start()
-        self.addCleanup(looks.stop)
+        self.enterContext(unittest.mock.patch.object(plan, "BATCH", 10))
         text = NETWORKS.format(runs=30)
         text = text[: text.index("[[collect]]")] + '[[collect]]\nname = "blocks"\nwhat = "blocks"\nstatistic = "number"\n'
         stop = '[stop]\nof = "blocks"\nhalf_width = {}\n'
@@ -1296,7 +1294,7 @@ class BySnakemake(Studies):
 
 class Reports(Studies):
     def report(self, source, name="report.html"):
-        done = in_a_copy(self.chain.programs / "jointcreep", "report", source, "-o", self.folder / name)
+        done = self.chain.jointcreep("report", source, "-o", self.folder / name)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = (self.folder / name).read_text()
         self.assertNotRegex(page, r"(src|href)=.(?!data:)")  # it needs no other file
@@ -1381,7 +1379,7 @@ class Reports(Studies):
         drawn = plots.draw("histories", result, pair=[("crest", "floor")]).axes[0].lines[0].get_ydata()
         self.assertAlmostEqual(drawn[-1], 1e3 * closure, places=12)
         for pairs, code in (("floor,crest", 0), ("floor,none", 2), ("floor", 2), (" ; ", 2), ("floor,floor", 2)):
-            done = in_a_copy(self.chain.programs / "jointcreep", "report", result, "--pairs", pairs, "-o", self.folder / "p.html")
+            done = self.chain.jointcreep("report", result, "--pairs", pairs, "-o", self.folder / "p.html")
             self.assertEqual(done.returncode, code, done.stderr)
         page = (self.folder / "p.html").read_text()
         self.assertIn("<td>floor</td><td>crest</td>", page)
@@ -1445,8 +1443,8 @@ class Reports(Studies):
         out = self.made(self.written('title = "Three networks"\n' + NETWORKS.format(runs=3)), self.folder / "out")
         notes, made = self.folder / "notes.txt", self.folder / "all.html"
         notes.write_text("# Summary\n\nThe slope <stands>\nwith both cohesions.\n\n- first\n- second & last\n")
-        words = [self.chain.programs / "jointcreep", "report", out, result, "-o", made, "--notes", notes]
-        done = in_a_copy(*words)
+        words = ["report", out, result, "-o", made, "--notes", notes]
+        done = self.chain.jointcreep(*words)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = made.read_text()
         self.assertNotRegex(page, r"(src|href)=.(?!data:)")
@@ -1457,7 +1455,7 @@ class Reports(Studies):
         notes.write_bytes(b"\xff\xfe")
         for more, expected in ((["-o", notes, "--notes", notes], "a file that is read"), (["-o", result], "a file that is read"),
                                (["-o", made, "--notes", notes], "is no text in UTF-8"), (["-o", made, "--pairs", "crest,floor"], "is for result files")):
-            done = in_a_copy(*words[:4], *more)
+            done = self.chain.jointcreep(*words[:3], *more)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(expected, done.stderr)
         self.assertEqual(made.read_text(), page)
@@ -1465,7 +1463,7 @@ class Reports(Studies):
     def test_refusals(self):
         for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
                              (self.chain.network(SCENE), 2)):
-            done = in_a_copy(self.chain.programs / "jointcreep", "report", source, "-o", self.folder / "r.html")
+            done = self.chain.jointcreep("report", source, "-o", self.folder / "r.html")
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertRegex(done.stderr, "^jointcreep: ")
             self.assertFalse((self.folder / "r.html").exists())
@@ -1678,7 +1676,7 @@ class Variables(Studies):
         moved = datasets(self.chain.run("demsolve", joints, self.folder / "r.h5"))
         floor = list(moved["/history/point"]).index("floor")
         self.assertEqual(float(row["floor y (mm)"]), 1e3 * moved["/history/displacement"][-1, floor, 1])
-        self.assertEqual(in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html").returncode, 0)
+        self.assertEqual(self.chain.jointcreep("report", out, "-o", self.folder / "r.html").returncode, 0)
         page = html.unescape((self.folder / "r.html").read_text())
         for words in "2 * half, varies by half", "1 / (1 / intact + 1 / 100), varies by E", '"intact" = "2 * E"':
             self.assertIn(words, page)
