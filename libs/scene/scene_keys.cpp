@@ -77,9 +77,11 @@ Table<Scene> variables()
     return {
         {"variables", once, optional,
          "Names for numbers: `H = 40`. A name consists of letters, digits and _. A key of the scene that wants a number "
-         "can have a text with such names, numbers, + - * / and ( ): `size_m = \"H / 20\"`, "
-         "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. A variable may be such a text, too. Sums of numbers alone, "
-         "`size_m = \"3 / 2\"`, need no [variables]; a single number has no quotes. The copy of the scene in the "
+         "can have a formula, a text with such names, numbers, + - * / ^ and ( ): `size_m = \"H / 20\"`, "
+         "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. Functions are `exp`, `ln`, `sqrt`, `abs`, `min`, `max` (of two "
+         "values or more), `sind`, `cosd` and `tand` (of an angle in degrees), and `atand` (an angle in degrees): "
+         "`\"H / tand(dip)\"`. A variable may be a formula, too. Formulas of numbers alone, `size_m = \"3 / 2\"`, need no "
+         "[variables]; a single number has no quotes. A date can be a formula of days. The copy of the scene in the "
          "programs' files has the numbers."},
         {}};
 }

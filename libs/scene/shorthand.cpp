@@ -25,7 +25,33 @@ using Point = Eigen::Vector2d;
 
 constexpr std::int64_t usual_sides = 32, most_sides = 1000; // of a whole circle
 
-// Numbers by name, and sums, differences, products and quotients of them.
+constexpr double radians = std::numbers::pi / 180; // of a degree, as all angles of a scene are
+
+// Functions of a formula. Those of angles have a d, for degrees, in their names.
+struct Function {
+    std::string_view name;
+    std::size_t least, most; // how many values it has
+    double (*of)(const std::vector<double>&);
+};
+constexpr std::size_t most_values = 20;
+const std::vector<Function>& functions()
+{
+    using Values = const std::vector<double>&;
+    static const std::vector<Function> all{
+        {"abs", 1, 1, [](Values x) { return std::abs(x[0]); }},
+        {"exp", 1, 1, [](Values x) { return std::exp(x[0]); }},
+        {"ln", 1, 1, [](Values x) { return std::log(x[0]); }},
+        {"sqrt", 1, 1, [](Values x) { return std::sqrt(x[0]); }},
+        {"sind", 1, 1, [](Values x) { return std::sin(radians * x[0]); }},
+        {"cosd", 1, 1, [](Values x) { return std::cos(radians * x[0]); }},
+        {"tand", 1, 1, [](Values x) { return std::tan(radians * x[0]); }},
+        {"atand", 1, 1, [](Values x) { return std::atan(x[0]) / radians; }},
+        {"min", 2, most_values, [](Values x) { return *std::ranges::min_element(x); }},
+        {"max", 2, most_values, [](Values x) { return *std::ranges::max_element(x); }}};
+    return all;
+}
+
+// Numbers by name, and formulas of them.
 class Variables
 {
 public:
@@ -34,7 +60,7 @@ public:
     {
     }
 
-    // Of a number, or of a text such as "H", "2 * H + 3" or "(a - b) / 2". `title` is what messages call the key.
+    // Of a number, or of a text such as "H", "2 * H + 3" or "max(a, b) / 2". `title` is what messages call the key.
     double value_of(const TomlValue& written, const std::string& title)
     {
         if (const auto* const whole = std::get_if<std::int64_t>(&written.content))
@@ -118,7 +144,8 @@ private:
         return number;
     }
 
-    // sum = product {(+|-) product}, product = factor {(*|/) factor}, factor = number | name | (sum) | -factor
+    // sum = product {(+|-) product}, product = factor {(*|/) factor}, factor = -factor | power,
+    // power = value [^ factor], value = number | name | (sum) | function(sum {, sum})
     struct Sum {
         Variables& variables;
         const TomlValue& at;
@@ -145,7 +172,7 @@ private:
             const double value = sum();
             if (next() != '\0')
                 refuse("\"" + std::string(rest) +
-                       "\" is no part of a sum of numbers and names of [variables], such as \"2 * H + 3\"");
+                       "\" is no part of a formula of numbers and names of [variables], such as \"2 * H + 3\"");
             return value;
         }
         double sum()
@@ -183,6 +210,18 @@ private:
         {
             if (takes('-'))
                 return -factor();
+            const double base = value();
+            return takes('^') ? finite(std::pow(base, factor()), "a power in it") : base;
+        }
+        // A comparison in min() and max() would hide one that is not.
+        double finite(double value, const std::string& what) const
+        {
+            if (!std::isfinite(value))
+                refuse(what + " is not a finite number");
+            return value;
+        }
+        double value()
+        {
             if (takes('(')) {
                 const double value = sum();
                 if (!takes(')'))
@@ -204,7 +243,29 @@ private:
                                     : "\"" + std::string(rest) +
                                           "\" does not begin with a number or a name of [variables]");
             rest.remove_prefix(name.size());
-            return variables.named(name, at, title);
+            return takes('(') ? called(name) : variables.named(name, at, title);
+        }
+        // After the function's "(".
+        double called(const std::string& name)
+        {
+            const auto found = std::ranges::find(functions(), name, &Function::name);
+            if (found == functions().end()) {
+                std::string names;
+                for (const Function& one : functions())
+                    names += (names.empty() ? "" : ", ") + std::string(one.name);
+                refuse("there is no function " + name + "; expected one of " + names +
+                       " (the d is for degrees)");
+            }
+            std::vector<double> values;
+            do
+                values.push_back(finite(sum(), "a value of " + name));
+            while (values.size() < most_values && takes(','));
+            if (!takes(')'))
+                refuse(next() == ',' ? name + " has too many values" : "a ( without its )");
+            if (values.size() < found->least || values.size() > found->most)
+                refuse(name + " has " + std::to_string(values.size()) + " values; expected " +
+                       (found->most == 1 ? "one" : "two or more"));
+            return finite(found->of(values), name + " of " + shown(values.front()));
         }
     };
 };
@@ -330,7 +391,7 @@ private:
     {
         return std::ranges::any_of(text,
                                    [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }) ||
-               (!is_date && (text.find_first_of("+*/(") != text.npos || text.find(" - ") != text.npos));
+               (!is_date && (text.find_first_of("+*/^(") != text.npos || text.find(" - ") != text.npos));
     }
 
     // Texts in it, at any depth.
@@ -473,6 +534,9 @@ std::string written_out(const std::string& text, const std::string& name)
     for (std::size_t at = text.find('"'); at != std::string::npos && !has_sum; at = text.find('"', at + 1))
         has_sum = at + 1 < text.size() &&
                   std::string_view("0123456789.(-").find(text[at + 1]) != std::string_view::npos;
+    has_sum = has_sum || std::ranges::any_of(functions(), [&](const Function& one) {
+                  return has((std::string(one.name) + "(").c_str());
+              });
     if (!has_sum && !has("variables") && !has("center") && !has("radius") && !has("through"))
         return text;
     return Writer(text, name).written_out();

@@ -148,6 +148,8 @@ def mean_with_interval(study, values, run, coarse=None):
     if design.kind == "networks x parameters":
         table = crossed_table(study, values, run)
         return intervals.mean_of_crossed(table) if table is not None else (float(np.mean(values)), None, None, None)
+    if design.kind == "table":
+        return float(np.mean(values)), None, None, None
     if coarse is not None:
         return intervals.mean_by_control(values, coarse[:, 1] - coarse[:, 0])
     if design.replicates > 1:
@@ -176,7 +178,7 @@ def limits_of(quantity):
 def share_with_interval(study, hits, run):
     """Share of runs that hit, with the ends of its interval: of independent runs that of Clopper and Pearson, which is too wide
     for a Latin hypercube or a Sobol sequence."""
-    if study.design.kind != "networks x parameters":
+    if study.design.are_independent():
         return intervals.probability(int(hits.sum()), len(hits))
     table = crossed_table(study, hits.astype(float), run)
     return intervals.probability_of_crossed(table) if table is not None else (float(np.mean(hits)), None, None)
@@ -236,8 +238,8 @@ def statistics(study, quantity, values, run, coarse=None, others=ALL_HAVE_VALUES
     if quantity.what != "failed":
         for part in QUANTILES:
             value, low, high = quantile(values, len(beyond), part)
-            dependent = study.design.kind == "networks x parameters"  # order statistics are of independent values
-            found.append((f"quantile {part:g}", n + len(beyond), value, *((None, None) if dependent else (low, high))))
+            ends = (low, high) if study.design.are_independent() else (None, None)  # order statistics are of independent values
+            found.append((f"quantile {part:g}", n + len(beyond), value, *ends))
     return found + shares_of_limits(study, quantity, values, run, others)
 
 
@@ -328,7 +330,7 @@ def rank_correlations(study, rows, given, at):
         if r is None:
             continue
         low = high = None
-        if abs(r) < 1 - 1e-12:  # at 1 and -1 the transformation is infinite
+        if study.design.kind != "table" and abs(r) < 1 - 1e-12:  # at 1 and -1 the transformation is infinite
             half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
             low, high = map(float, np.tanh(np.arctanh(r) + np.array([-half, half])))
         rows.append((study.parameters[column].name, CORRELATION, float(r), low, high))

@@ -120,6 +120,8 @@ def draw(study):
     design, size = study.design, study.design.networks_drawn()
     pairs = design.kind == "networks x parameters"
     in_cube = design.kind == "sobol indices" and study.varies_network  # the network is its last dimension
+    if design.kind == "table":
+        return np.array(design.networks_given), [[one.values[run] for one in study.parameters] for run in range(design.runs)]
     if not study.parameters:
         return by_run(study, np.arange(size), [[] for _ in range(size)])
     drawn = numpy_points if draws_with_numpy(study) else cube_points

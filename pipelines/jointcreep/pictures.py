@@ -28,7 +28,7 @@ def distribution(quantity, study, values, beyond=0):
     """Share of runs up to a value, with the interval of each share. beyond: how many runs more have a larger value, which is not known."""
     plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN, 2.6))
     ordered, n = np.sort(values), len(values) + beyond
-    if study.design.kind != "networks x parameters":
+    if study.design.are_independent():
         counts = np.unique(np.linspace(1, len(values), min(len(values), BAND_POINTS)).astype(int))
         ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
         axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post", facecolor=BAND,
@@ -112,7 +112,7 @@ def parameters(quantity, study, values, run, given, of_shares):
     for axes, column in zip(panels, numeric):
         of_runs = np.array([given[one]["given"][column] for one in run], float)
         if quantity.what == "failed":
-            share_in_classes(axes, of_runs, values, are_independent=study.design.kind != "networks x parameters")
+            share_in_classes(axes, of_runs, values, study.design.are_independent())
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name + "\n(above: number of runs)" * (quantity.what == "failed"))

@@ -118,7 +118,7 @@ def identity(study, scene, formulas, programs):
         "[[vary]]": [study.varies_network, [[one.name, one.keys, one.multiplies, one.law, one.constants, str(one.lowest),
                                              str(one.highest), one.values] for one in study.parameters]],
         "[[correlation]]": study.correlations,
-        "[design]": [design.kind, design.seed, *sizes, *levels, *by_numpy],
+        "[design]": [design.kind, design.seed, *sizes, *levels, *by_numpy, *design.networks_given],
         "[[collect]]": [[one.name, one.what, one.point, *filter(None, [one.relative_to]), one.component, one.since, one.stage,
                          str(one.date), one.statistic] for one in study.quantities],
         "demsolve_options": study.demsolve_options,
@@ -177,10 +177,15 @@ def groups_of(first, end, size):
     return [group_name(number) for number in range(first // size, -(-end // size))]
 
 
+def study_in(out):
+    """The study of a folder; the runs of a table are in design.csv."""
+    return study_file.read(out / "study.toml", out / "design.csv")
+
+
 @functools.cache
 def planned(out):
     """The study, the scene (as tomllib reads it, and its text) and the plan of a folder."""
-    study = study_file.read(out / "study.toml")
+    study = study_in(out)
     text = (out / "scene.toml").read_text("utf-8")
     return study, tomllib.loads(text), text, parsed((out / "plan.json").read_bytes(), out / "plan.json")
 
@@ -197,17 +202,12 @@ def given(out, study, rows=()):
     the lines of results have them."""
     if study.design.directions:
         return {row["run"]: row for row in rows}
-    kinds = [str if one.values and isinstance(one.values[0], str) else one_number for one in study.parameters]
+    kinds = [str if one.values and isinstance(one.values[0], str) else study_file.number_of for one in study.parameters]
     with open(out / "design.csv", encoding="utf-8", newline="") as file:
         rows = csv.reader(file)
         next(rows)
         return {int(run): {"run": int(run), "network": int(network), "given": [kind(one) for kind, one in zip(kinds, of_run)]}
                 for run, network, *of_run in rows}
-
-
-def one_number(text):
-    """A number as it was written: a whole one stays whole."""
-    return int(text) if text.lstrip("+-").isdecimal() else float(text)
 
 
 def of_group(out, number):

@@ -371,7 +371,7 @@ def of_stable_runs(statistic, quantity, rows):
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
     from . import answers  # takes long to load
-    study = study_file.read(out / "study.toml")
+    study = plan.study_in(out)
     found = plan.parsed((out / "plan.json").read_bytes(), out / "plan.json")
     rows, found_answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
     failed = [row for row in rows if row["exit code"] != "0"]

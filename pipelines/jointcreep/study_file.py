@@ -3,6 +3,7 @@
 Whatever is wrong is refused with a message that names file, line, key and value.
 """
 
+import csv
 import dataclasses
 import datetime
 import difflib
@@ -22,6 +23,7 @@ DESIGNS = {  # what each needs
     "sobol indices": ["points"],
     "directional sampling": ["directions"],
     "two levels": ["fine_runs", "coarse_per_fine"],
+    "table": ["file"],
 }
 REPLICATED = ["latin hypercube", "sobol sequence", "directional sampling"]
 EXTENSIBLE = ["plain", "two levels"]  # more runs may be added, and the first of them are a design too
@@ -36,8 +38,9 @@ ENDS = ["lower end", "upper end"]  # of the bracket of a factor of safety
 BLOCKS = {"number": "1", "mean area": "m2", "median area": "m2", "largest area": "m2"}  # statistics and their units
 WHAT = ["displacement", "blocks", "factor of safety", "failed"]
 NETWORK = "network"  # name of the column of the network's number
+RUN = "run"  # and of the run's
 LEVEL = "level"  # name of the column that says whether a run of "two levels" is fine or coarse
-RESERVED = {"run", NETWORK, LEVEL, "exit code", "no equilibrium", "program", "reason", "failure stage", "failure day", "moving blocks", "moving area"}
+RESERVED = {RUN, NETWORK, LEVEL, "exit code", "no equilibrium", "program", "reason", "failure stage", "failure day", "moving blocks", "moving area"}
 KEPT = ["network.h5", "joints.h5", "result.h5", "result.failed.h5", "safety.h5", "safety.failed.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
 BY_STOP_RULE = "by the stop rule"  # why a study ended before all its runs
@@ -54,7 +57,7 @@ class Parameter:
     constants: dict  # of the law
     lowest: float  # -inf, or where a law is cut off
     highest: float
-    values: list  # of a list
+    values: list  # of a list; of the design "table" that of each run
     place: str  # in the study file
 
 
@@ -115,6 +118,7 @@ class Design:
     coarse_per_fine: int = 0
     fine_options: list = dataclasses.field(default_factory=list)  # of demsolve, for fine runs
     coarse_options: list = dataclasses.field(default_factory=list)
+    networks_given: list = dataclasses.field(default_factory=list)  # of "table": that of each run, if it varies
 
     def block(self):
         """Runs of "two levels" that belong together: a fine one, and coarse ones of which the first has the same network."""
@@ -123,6 +127,10 @@ class Design:
     def networks_drawn(self):
         """Networks of a design in which each run, or each coarse run, has its own."""
         return self.fine_runs * self.coarse_per_fine if self.fine_runs else self.runs
+
+    def are_independent(self):
+        """Whether runs are independent of each other: not those on one network, nor those of a table, which can have any rows."""
+        return self.kind not in ("networks x parameters", "table")
 
     def counted(self):
         """What values are counted in: runs, of two levels the fine ones."""
@@ -253,8 +261,9 @@ class Table:
                 raise NotWanted(f"{self.place(key)}{key} is unknown here, or does not go with the other keys")
 
 
-def read(path):
-    """The study of a file. Scene and its keys are not looked at."""
+def read(path, table=None):
+    """The study of a file. Scene and its keys are not looked at. table: the file of a design "table", if it is not the one that the study
+    names."""
     path = pathlib.Path(path)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -281,15 +290,15 @@ def read(path):
     kept = top.several("keep", [], lambda one: one in KEPT, "a list of " + ", ".join(f'"{one}"' for one in KEPT))
     top.end()
 
-    varies_network, parameters = False, []
-    for table in each("vary"):
-        if table.flag("network", False):
+    varies_network, parameters, is_table = False, [], tables.get("design", {}).get("kind") == "table"
+    for one in each("vary"):
+        if one.flag("network", False):
             if varies_network:
-                table.wrong("network", "it in one [[vary]] only")
+                one.wrong("network", "it in one [[vary]] only")
             varies_network = True
         else:
-            parameters.append(parameter_of(table))
-        table.end()
+            parameters.append(parameter_of(one, is_table))
+        one.end()
     if not varies_network and not parameters:
         raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
     unique(parameters, path)
@@ -301,7 +310,7 @@ def read(path):
     for name in ("safety.h5", "safety.failed.h5"):
         if name in kept and all(one.what != "factor of safety" for one in quantities):
             top.wrong("keep", f'a [[collect]] with what = "factor of safety" for {name}')
-    design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
+    design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities, table)
     stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
     if with_histories and design.kind != "plain":
         top.wrong("histories", f'false, because the design is "{design.kind}" and not plain')
@@ -327,12 +336,13 @@ def unique(named, path):
         seen.add(one.name)
 
 
-def parameter_of(table):
+def parameter_of(table, is_in_table=False):
+    """Of a [[vary]]. is_in_table: its values are in the file of the design, and no law is."""
     key = table.get("key", None, lambda value: isinstance(value, str) and value or isinstance(value, list) and value and
                     all(isinstance(one, str) and one for one in value), "a key of the scene, or a list of keys, in quotes")
     keys = [key] if isinstance(key, str) else key
-    values = table.several("values", [], lambda one: is_number(one) or isinstance(one, str), "a list of numbers or texts")
-    law = "" if values else table.text("law", None, list(LAWS))
+    values = [] if is_in_table else table.several("values", [], lambda one: is_number(one) or isinstance(one, str), "a list of numbers or texts")
+    law = "" if values or is_in_table else table.text("law", None, list(LAWS))
     constants = {name: table.number(name) for name in LAWS.get(law, [])}
     low, high = (table.number(name, default) if law in BOUNDED else default
                  for name, default in (("lowest", -math.inf), ("highest", math.inf)))
@@ -359,8 +369,72 @@ def correlation_of(table, parameters):
     return (*between, coefficient)
 
 
-def design_of(table, varies_network, parameters, correlations, quantities):
+def table_of(path, wanted, where):
+    """Columns of a CSV file by their names, of which these are wanted: numbers, or texts if one of them is none. where: what names the
+    file, in messages."""
+    try:
+        rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except OSError as error:
+        raise NotWanted(f"{where}{path}: {error.strerror}; expected a CSV file") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise NotWanted(f"{path}: is no CSV text; expected a table with a line of names") from None
+    rows = [(number, row) for number, row in enumerate(rows, 1) if row]
+    if len(rows) < 3:
+        raise NotWanted(f"{path}: has {max(0, len(rows) - 1)} runs; expected a line of names, and a line for each of two runs or more")
+    names = [name.strip() for name in rows[0][1]]
+    for name in wanted:
+        if names.count(name) != 1:
+            raise NotWanted(f'{path}, line {rows[0][0]}: has {names.count(name) or "no"} columns "{name}"; expected one for each [[vary]]: '
+                            f'{", ".join(wanted)}')
+    other = [name for name in names if name not in (*wanted, RUN, NETWORK)]
+    if other:
+        raise NotWanted(f'{path}, line {rows[0][0]}: no [[vary]] has the name "{other[0]}"; expected columns {", ".join(wanted)}')
+    for number, row in rows[1:]:
+        if len(row) != len(names) or not all(map(str.strip, row)):
+            raise NotWanted(f"{path}, line {number}: has {sum(map(bool, map(str.strip, row)))} values; expected {len(names)}, as the first line")
+    columns = {}
+    for at, name in enumerate(names):
+        texts = [row[at].strip() for _, row in rows[1:]]
+        numbers = list(map(number_of, texts))
+        columns[name] = texts if None in numbers else numbers
+    most = 2**31 - 1 if NETWORK in wanted else 0
+    for (number, _), one in zip(rows[1:], columns.get(NETWORK, [])):
+        if not isinstance(one, int) or not 0 <= one <= most:
+            expected = f"a whole number from 0 to {most}" if most else "0, or a [[vary]] with network = true"
+            raise NotWanted(f"{path}, line {number}: {NETWORK} is {shown(one)}; expected {expected}")
+    return columns
+
+
+def number_of(text):
+    """A number as it is written, a whole one as such; None of other texts."""
+    try:
+        value = int(text) if text.lstrip("+-").isdecimal() else float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def table_design(table, varies_network, parameters, given):
+    """The design of a table of runs, which has the values of the parameters, too. given: its file, or None: the one that the study names."""
+    path = given or table.path.parent / table.text("file")
+    table.left.pop("file", None)
+    table.end()
+    columns = table_of(path, [one.name for one in parameters] + [NETWORK] * varies_network, table.place("file"))
+    runs = len(next(iter(columns.values())))
+    if runs > MOST_RUNS:
+        raise NotWanted(f"{path}: these are {runs} runs; expected at most {MOST_RUNS}")
+    for one in parameters:
+        one.values = columns[one.name]
+        if one.multiplies and any(isinstance(value, str) for value in one.values):
+            raise NotWanted(f'{path}: "{one.name}" has texts; expected numbers, because its [[vary]] multiplies')
+    return Design("table", 1, runs, 0, 0, 0, 1, 0, "", networks_given=columns.get(NETWORK, [0] * runs))
+
+
+def design_of(table, varies_network, parameters, correlations, quantities, given):
+    """Of [design]. given: as table of read()."""
     kind = table.text("kind", "plain", list(DESIGNS))
+    if kind == "table":
+        return table_design(table, varies_network, parameters, given)
     counts = {name: table.whole(name, least=2) if name in DESIGNS[kind] else 0
               for name in ("runs", "networks", "parameters", "points", "directions", "fine_runs", "coarse_per_fine")}
     replicates = table.whole("replicates", 10, least=2) if kind in REPLICATED else 1

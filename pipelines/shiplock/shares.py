@@ -15,18 +15,18 @@ Standard errors are by leaving out one in twenty of the sets after the other (ja
 0: it is too small to be seen. What the polynomial does not explain, and the network does not either, is the
 lack of fit.
 
-In OUT it writes shares.md, shares.csv, shares.png and ridge.png. Every run leaves OUT/runs/NUMBER.json, and is made again only
-if its scene changes. Blocks and zones are coarser than the scene's: COARSE.
+The runs are those of a study (jointcreep study): the inputs are [variables] of a scene, of which its keys have formulas, and the
+design is a table. In OUT it writes scene, points and study, shares.md, shares.csv, shares.png and ridge.png; the runs are in
+OUT/study. Blocks and zones are coarser than the scene's: COARSE.
 """
 
 import argparse
 import csv
 import datetime
-import hashlib
 import io
-import json
 import math
 import pathlib
+import subprocess
 import sys
 import tempfile
 import tomllib
@@ -36,11 +36,12 @@ import matplotlib.colors
 import numpy as np
 from scipy.stats import qmc
 
+import jointcreep
 import records
 import study
 import variant
-from jointcreep import chain, files
-from jointcreep.chain import Failed, run
+from jointcreep import files, scene_keys
+from jointcreep.chain import run
 from records import figure
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -72,9 +73,9 @@ INPUTS = {
     "gradient": Input("stress, gradient", 0.018, 0.026, "MPa/m", 0.022),
     "decay": Input("depth of decay of the tectonic stress", 5, 40, "m", 20),
     "spacing": Input("spacing of all sets, times", 0.75, 1.4),
-    **{f"spacing {name}": Input(f"spacing of {name} alone, times", 0.67, 1.5) for name in SETS},
-    **{f"dip {name}": Input(f"dip of {name}", -10, 10, "deg", 0) for name in SETS},
-    **{f"direction {name}": Input(f"dip direction of {name}", -15, 15, "deg", 0) for name in SETS},
+    **{f"spacing_{name}": Input(f"spacing of {name} alone, times", 0.67, 1.5) for name in SETS},
+    **{f"dip_{name}": Input(f"dip of {name}", -10, 10, "deg", 0) for name in SETS},
+    **{f"direction_{name}": Input(f"dip direction of {name}", -15, 15, "deg", 0) for name in SETS},
     "scatter": Input("scatter of dip and direction, times", 0.5, 1.5),
     "persistence": Input("persistence, times", 0.67, 1.5),
     "stiffness": Input("K over its rule K/k, times", 0.5, 2),
@@ -97,91 +98,83 @@ INPUTS = {
 
 # --- The runs -----------------------------------------------------------------------------------------------------------------
 
+SHIFTED = {"-1800": "-domain", "1800": "domain", "-1000": "200 - domain * 2 / 3"}  # coordinates at sides and base of the section
+BEHIND = 300  # above the ground everywhere [m]: a joint set's region is cut off at the outline
 
-def stress_profile(scene, values):
-    """sigma_x by its law, sigma_y the weight; levels at the bottoms of cover and weak rock."""
+
+def placed(value):
+    """Coordinates, where those of sides and base follow the domain."""
+    return [placed(one) for one in value] if isinstance(value, list) else SHIFTED.get(f"{value:g}", value)
+
+
+def at_depth(ground, depth):
+    """A rock above a depth: the ground, and the line below it."""
+    return placed(ground) + [[x, f"{y!r} - ({depth})"] for x, y in reversed(placed(ground))]
+
+
+def horizontal_stress(depth):
+    """The formula of variant.horizontal_stress() [MPa]."""
+    return f"tectonic * (1 - exp(-({depth}) / decay)) + gradient * ({depth})"
+
+
+def stress_profile(scene):
+    """sigma_x by its law, sigma_y the weight; levels at the bottoms of cover and weak rock, too."""
     density = {rock["name"]: rock["density_kg_per_m3"] for rock in scene["rock"]}
     gravity = scene["section"]["gravity_m_per_s2"]
-    bottoms = (values["cover"], values["cover"] + values["weak"])
-    depths = sorted({0, 5, 10, 50, 75, 100, 150, 300, *bottoms})
     levels = []
-    for h in depths:
-        weight = (density["cover"] * min(h, bottoms[0]) + density["weak"] * min(max(h - bottoms[0], 0), values["weak"])
-                  + density["fresh"] * max(h - bottoms[1], 0))
-        levels.append({"depth_m": round(h, 4), "compression_xx_MPa": round(across_at(h, values), 5),
-                       "compression_yy_MPa": round(1e-6 * gravity * weight, 5), "shear_xy_MPa": 0})
+    for h in (0, 5, 10, "cover", "cover + weak", 50, 75, 100, 150, 300):
+        weight = (f"{density['cover']} * min({h}, cover) + {density['weak']} * min(max({h} - cover, 0), weak) "
+                  f"+ {density['fresh']} * max({h} - cover - weak, 0)")
+        levels.append({"depth_m": h, "compression_xx_MPa": horizontal_stress(h),
+                       "compression_yy_MPa": f"{1e-6 * gravity!r} * ({weight})", "shear_xy_MPa": 0})
     return levels
 
 
-def across_at(depth, values):
-    """Horizontal stress [MPa]."""
-    return variant.horizontal_stress(depth, values["tectonic"], values["gradient"], values["decay"])
-
-
-def box_bottom(half):
-    """60 m at the scene's 220 m, and about the extents of study.py."""
-    return 60 - 0.5 * (half - 220)
-
-
-def scene_of(text, values):
-    """The scene's text with the values of all inputs but the first readings, which are shifted when histories are read."""
+def with_variables(text):
+    """The scene with formulas of the inputs, which are its [variables], as TOML."""
     scene = tomllib.loads(text)
-    ground = scene["in_situ_stress"]["ground_m"]
-    set_box = variant.box(scene, values["box"], box_bottom(values["box"]))
-    springs = values["stiffness"] / values["persistence"]
+    start, ground = scene["schedule"]["start"], scene["in_situ_stress"]["ground_m"]
+    scene["variables"] = {key: one.own for key, one in INPUTS.items()}
 
-    def of_set(record, key, value):
-        name = record["name"]
-        if key == "spacing":
-            return {**value, "mean_m": value["mean_m"] * values["spacing"] * values[f"spacing {name}"]}
-        if key in ("dip", "dip_direction"):
-            mean = value["mean_deg"] + values[f"{'dip' if key == 'dip' else 'direction'} {name}"]
-            return {**value, "mean_deg": mean % 360, "deviation_deg": value["deviation_deg"] * values["scatter"]}
-        if key == "persistence":
-            return value * values["persistence"]
+    def change(table, key, formula):
+        """formula: with {} where the scene's own value is."""
+        if key in table:
+            value = table[key]
+            table[key] = formula.format((value - start).days if isinstance(value, datetime.date) else repr(value))
 
-    def of_material(_, key, value):
-        if key in variant.SPRINGS:
-            return value * springs
-        if key in variant.KELVIN:
-            return value * springs * values["kelvin"] * (values["time"] if "viscosity" in key else 1)
-        if key == "cohesion_MPa":
-            return value * values["cohesion"]
-        if key == "friction_angle_deg":
-            return values["friction"]
-
-    def of_rock(record, key, value):
-        if key == "cohesion_MPa":
-            return value * values["bridges"]
-        if key == "tensile_strength_MPa":
-            return value * values["tension"]
-        if key == "youngs_modulus_GPa" and record["name"] in variant.YOUNGS_MODULI:
-            low, high = variant.YOUNGS_MODULI[record["name"]]
-            return low + values["rock"] * (high - low)
-
-    def of_region(record, key, _):
-        if key == "outline_m":
-            depth = values["cover"] + (0 if record["rock"] == "cover" else values["weak"])
-            return [*ground, *([x, round(y - depth, 4)] for x, y in reversed(ground))]
-
-    def of_stage(_, key, value):
-        return value + datetime.timedelta(round(values["dates"])) if key == "date" else None
-
-    def of_section(_, key, __):
-        return values["azimuth"] if key == "azimuth_deg" else None
-
-    tables = {"joint_set": of_set, "joint_material": of_material, "rock": of_rock, "region": of_region, "stage": of_stage,
-              "section": of_section}
-
-    def change(table, record, key, value):
-        if (table, key) == ("in_situ_stress", "profile"):
-            return stress_profile(scene, values)
-        in_box = set_box(table, record, key, value)
-        return tables[table](record, key, value) if in_box is None and table in tables else in_box
-
-    text = variant.edited(text, change)
-    half = values["domain"]
-    return variant.edited(text, variant.domain(tomllib.loads(text), half, 200 - half * 2 / 3))
+    section = scene["section"]
+    section.update(outline_m=placed(section["outline_m"]), azimuth_deg="azimuth")
+    for rock in scene["rock"]:
+        change(rock, "cohesion_MPa", "{} * bridges")
+        change(rock, "tensile_strength_MPa", "{} * tension")
+        if rock["name"] in variant.YOUNGS_MODULI:
+            low, high = variant.YOUNGS_MODULI[rock["name"]]
+            rock["youngs_modulus_GPa"] = f"{low} + rock * {high - low}"
+    for region in scene["region"]:
+        region["outline_m"] = at_depth(ground, "cover" if region["rock"] == "cover" else "cover + weak")
+    for material in scene["joint_material"]:
+        for key in variant.SPRINGS:
+            change(material, key, "{} * stiffness / persistence")
+        for key in variant.KELVIN:
+            change(material, key, "{} * stiffness / persistence * kelvin" + " * time" * ("viscosity" in key))
+        change(material, "cohesion_MPa", "{} * cohesion")
+        material["friction_angle_deg"] = "friction"
+    for one in scene["joint_set"]:
+        change(one["spacing"], "mean_m", f"{{}} * spacing * spacing_{one['name']}")
+        for key, words in (("dip", "dip"), ("dip_direction", "direction")):
+            change(one[key], "mean_deg", f"{{}} + {words}_{one['name']}")
+            change(one[key], "deviation_deg", "{} * scatter")
+        change(one, "persistence", "{} * persistence")
+        bottom = "60 - 0.5 * (box - 220)"  # about the extents of study.py
+        one["region_m"] = [["-box", bottom], ["box", bottom], ["box", BEHIND], ["-box", BEHIND]]
+    scene["in_situ_stress"].update(ground_m=placed(ground), profile=stress_profile(scene))
+    for boundary in scene["boundary"]:
+        boundary.update(from_m=placed(boundary["from_m"]), to_m=placed(boundary["to_m"]))
+    for stage in scene["stage"]:
+        change(stage, "date", "{} + dates")
+    for point in scene["point"]:
+        change(point, "first_reading", "{} + readings")
+    return scene_keys.toml_text(scene)
 
 
 def shares_of_range(number):
@@ -193,40 +186,37 @@ def values_of_set(row):
     return {key: one.value(share) for (key, one), share in zip(INPUTS.items(), row)}
 
 
-def run_of(arguments, text, row, number):
-    """Result of a run, from its file if that is of the same scene."""
-    values = values_of_set(row)
-    scene = scene_of(text, values)
-    key = hashlib.sha256(f"{number} {scene}".encode()).hexdigest()
-    path = arguments.output / "runs" / f"{number:04d}.json"
-    if path.exists():
-        found = json.loads(path.read_text())
-        if found["key"] == key:
-            return found
-    try:
-        with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
-            folder = pathlib.Path(folder)
-            joints = chain.joints_of(arguments.programs, scene, folder, "--realization", number)
-            result = study.solved(arguments.programs, joints, folder)
-    except Failed as error:
-        result = {"failed": str(error)}
-    print(f"run {number}: {result.get('failed', 'equilibrium')}", flush=True)
-    result = {"key": key, "values": values, **result}
-    files.write_text(path, json.dumps(result))
-    return result
+def table_of(rows):
+    """The design as CSV: runs 2 i and 2 i + 1 are those of set i, on networks of these numbers."""
+    return files.csv_text(["network", *INPUTS], [[2 * place + which, *values_of_set(row).values()] for place, row in enumerate(rows)
+                                                 for which in range(2)])
 
 
-def results_of(arguments):
-    """Rows of the design, and its results: runs 2 i and 2 i + 1 are those of set i."""
-    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
+QUANTITIES = (("total", "in situ"), ("recorded", "first reading"))
+
+
+def study_of(points, end):
+    """The study file: displacements of the points across the lock at the end of the records."""
+    vary = "".join(f'\n[[vary]]\nname = "{key}"\nkey = "variables.{key}"\n' for key in INPUTS)
+    collect = "".join(f'\n[[collect]]\nname = "{name} {point}"\nwhat = "displacement"\npoint = "{point}"\ncomponent = "x"\n'
+                      f'since = "{since}"\ndate = {end}\n' for name, since in QUANTITIES for point in points)
+    return f'scene = "scene.toml"\n\n[[vary]]\nnetwork = true\n{vary}\n[design]\nkind = "table"\nfile = "points.csv"\n{collect}'
+
+
+def runs_of(arguments, points, end):
+    """Rows of the design, and the table of its runs, by `jointcreep study`."""
+    rows = shares_of_range(arguments.sets)
+    arguments.output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         base = pathlib.Path(folder) / "base.toml"
         run(sys.executable, HERE / "variant.py", arguments.scene, *COARSE, "-o", base)
-        text = base.read_text(encoding="utf-8")
-    rows = shares_of_range(arguments.sets)
-    # Two runs of a set, one after the other: what is stopped has whole sets.
-    return rows, study.side_by_side(arguments.jobs, lambda number: run_of(arguments, text, rows[number // 2], number),
-                                    range(2 * len(rows)))
+        files.write_text(arguments.output / "scene.toml", with_variables(base.read_text(encoding="utf-8")))
+    files.write_text(arguments.output / "points.csv", table_of(rows))
+    files.write_text(arguments.output / "study.toml", study_of(points, end))
+    out = arguments.output / "study"
+    subprocess.run([arguments.programs / "jointcreep", "study", arguments.output / "study.toml", "-o", out, "-j", str(arguments.jobs)],
+                   check=True)
+    return rows, jointcreep.read(out).runs
 
 
 # --- The fit ------------------------------------------------------------------------------------------------------------------
@@ -413,13 +403,18 @@ def picture(names, indices, errors, path, most=16):
     figure.save(plot, path)
 
 
+def stress_60(values):
+    """Horizontal stress 60 m below the ground [MPa]."""
+    return variant.horizontal_stress(60, values["tectonic"], values["gradient"], values["decay"])
+
+
 def ridge(rows, pairs, fit, targets, path):
     """Misfit over horizontal stress and joint stiffness times spacing: of the runs, and of the polynomial with all other inputs
     as in the scene."""
     keys = list(INPUTS)
     values = [values_of_set(row) for row in rows]
     stiffness = np.array([v["stiffness"] / v["persistence"] * v["spacing"] for v in values])
-    stress = np.array([across_at(60, v) for v in values])
+    stress = np.array([stress_60(v) for v in values])
     misfit = answers_of(np.exp(np.log(pairs).mean(axis=1)), targets)[:, 2]
     plot, (left, right) = figure.plt.subplots(1, 2, figsize=(figure.TWO_COLUMNS, 2.9), sharey=True)
     limits = [0.25, 0.5, 1, 2, 4, 8, 16]
@@ -438,11 +433,11 @@ def ridge(rows, pairs, fit, targets, path):
     found = answers_of(at, targets)
     scene = {key: one.own for key, one in INPUTS.items()}
     across = [INPUTS["stiffness"].value(one) for one in x[0]]
-    up = [across_at(60, {**scene, "tectonic": INPUTS["tectonic"].value(one)}) for one in y[:, 0]]
+    up = [stress_60({**scene, "tectonic": INPUTS["tectonic"].value(one)}) for one in y[:, 0]]
     right.contourf(across, up, found[:, 2].reshape(x.shape), limits, norm=colors, cmap="viridis", extend="both")
     lines = right.contour(across, up, found[:, 0].reshape(x.shape), [45, 60, 75, 90, 120], colors="w", linewidths=0.8)
     right.clabel(lines, fmt="%g mm", fontsize=6)
-    right.plot(1, across_at(60, scene), "k*", markersize=7)
+    right.plot(1, stress_60(scene), "k*", markersize=7)
     right.set_xlabel("joint stiffness, over the scene's")
     right.set_title("polynomial: others as in the scene; mean total")
     for axes in (left, right):
@@ -457,19 +452,14 @@ def ridge(rows, pairs, fit, targets, path):
             float(np.corrcoef(np.log(stiffness[small]), np.log(stress[small]))[0, 1]), int(small.sum()))
 
 
-def pairs_of(results, targets, below):
-    """Places of the sets with two results, and [set, network, quantity]: totals, then records, of the points below the crest."""
-    kept, pairs = [], []
-    for i in range(0, len(results), 2):
-        two = results[i:i + 2]
-        if any("failed" in one for one in two):
-            continue
-        each = [study.values_of(one, targets, round(one["values"]["readings"])) for one in two]
-        values = np.array([np.concatenate([total[below], recorded[below]]) for total, recorded in each])
-        if np.all(values > 0):  # a point that was excavated with its rock has no number
-            kept.append(i // 2)
-            pairs.append(values)
-    return kept, np.array(pairs)
+def pairs_of(runs, points, positions):
+    """Places of the sets with two results, and [set, network, quantity] of the runs: totals, then records, of these points, toward the
+    lock. A run without equilibrium, or in which a point is excavated with its rock, has none."""
+    toward = [-math.copysign(1, positions[point]) for point in points] * 2
+    values = np.array([runs[f"{name} {point} (mm)"] for name, _ in QUANTITIES for point in points]).T * toward
+    pairs = values.reshape(-1, 2, values.shape[1])
+    kept = np.flatnonzero((pairs > 0).all(axis=(1, 2)))
+    return kept, pairs[kept]
 
 
 def main():
@@ -482,9 +472,11 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     targets = records.targets_of(arguments.targets)
-    below, _ = study.below_the_crest(arguments.scene, targets)
-    rows, results = results_of(arguments)
-    kept, pairs = pairs_of(results, targets, below)
+    scene = tomllib.loads(arguments.scene.read_text(encoding="utf-8"))
+    names = [point["name"] for point in scene["point"]]
+    points = [names[place] for place in study.below_the_crest(arguments.scene, targets)[0]]
+    rows, runs = runs_of(arguments, points, targets["end_of_record"])
+    kept, pairs = pairs_of(runs, points, {point["name"]: point["at_m"][0] for point in scene["point"]})
     rows = rows[kept]
     if len(rows) < 10:
         sys.exit(f"shares.py: {len(rows)} sets have two results; at least 10 are wanted, a larger --sets")
@@ -496,11 +488,11 @@ def main():
 
     names = [(one.name, range_of(one)) for one in INPUTS.values()] + [("network", "two for each set")]
     told = ridge(rows, pairs, fit, targets, arguments.output / "ridge.png")
-    failed = sum("failed" in one for one in results)
+    number, failed = len(runs["run"]), int((runs["exit code"] != 0).sum())
     more = [" x ".join(names[i][0] for i in (term if term[0] != term[1] else term[:1])) + (" (square)" if term[0] == term[1] else "")
             for term in fit.terms if len(term) == 2]
     facts = [
-        f"{len(results)} runs, two networks for each of {len(results) // 2} sets; {failed} without equilibrium; {len(rows)} sets are used.",
+        f"{number} runs, two networks for each of {number // 2} sets; {failed} without equilibrium; {len(rows)} sets are used.",
         "Mean and standard deviation: " + "; ".join(
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
         "The network's share in all from the runs alone: " + ", ".join(

@@ -8,9 +8,11 @@ import sys
 import tomllib
 import unittest.mock
 
+import h5py
 import numpy
 
 from chain import ChainTest, changed, datasets, main
+from jointcreep import scene_keys, study_file
 
 TAG = re.compile(r"# (paper|published|inferred|assumed)\b")
 SCENE = "data/shiplock/section-a.toml"
@@ -140,24 +142,75 @@ class Shiplock(ChainTest):
         self.assertRegex(text, r"\| N215 \| 15\.60 \|.*\|  \|  \|  \|  \|\n", "not read yet")
 
     def test_scene_of_the_shares(self):
-        """With the scene's own values it is the scene; each input but the first readings changes it."""
+        """With the scene's own values it is the scene; each input is in a formula."""
         import shares
         text = self.chain.text(SCENE)
-        own = {key: one.own for key, one in shares.INPUTS.items()}
-        unchanged = shares.scene_of(text, own)
-        scene, same = tomllib.loads(text), tomllib.loads(unchanged)
+        named = shares.with_variables(text)
+        with h5py.File(self.chain.network(named)) as file:
+            same = tomllib.loads(file["/scene"][0].decode())
+        scene, start = tomllib.loads(text), tomllib.loads(text)["schedule"]["start"]
+        del same["variables"]
         for one, other in zip(scene["in_situ_stress"].pop("profile"), same["in_situ_stress"].pop("profile"), strict=True):
             for key, value in one.items():
                 self.assertAlmostEqual(other[key], value, delta=1e-4)
-        self.assertEqual(same, scene)
+        for one in (*scene["stage"], *scene["point"]):  # dates are days in formulas
+            one.update({key: (value - start).days for key, value in one.items() if key in ("date", "first_reading")})
+        for one in scene["joint_set"]:  # the ground cuts the joints off, whatever is above it
+            one["region_m"] = [[-220, 60], [220, 60], [220, 300], [-220, 300]]
+        self.assert_same_numbers(same, scene)
+        used = tomllib.loads(named)
         for key, one in shares.INPUTS.items():
             self.assertAlmostEqual(one.value(one.share(one.own)), one.own)
             self.assertTrue(one.low < one.own < one.high, key)
-            self.assertEqual(shares.scene_of(text, {**own, key: one.value(0.9)}) == unchanged, key == "readings", key)
+            self.assertTrue(any(key in scene_keys.names_in(value) for table, value in used.items() if table != "variables"), key)
         rows = shares.shares_of_range(16)
         self.assertTrue(((rows >= 0) & (rows < 1)).all())
         numpy.testing.assert_array_equal(shares.shares_of_range(5), rows[:5])
-        self.chain.network(shares.scene_of(text, shares.values_of_set(rows[3])))
+
+    def assert_same_numbers(self, one, other):
+        """Of two scenes that differ in the last digits only."""
+        if isinstance(other, dict):
+            self.assertEqual(one.keys(), other.keys())
+        if isinstance(other, (dict, list)):
+            self.assertEqual(len(one), len(other))
+            for key in other if isinstance(other, dict) else range(len(other)):
+                self.assert_same_numbers(one[key], other[key])
+        elif isinstance(other, float):
+            self.assertAlmostEqual(one, other, delta=1e-12 * abs(other))
+        else:
+            self.assertEqual(one, other)
+
+    def test_runs_of_the_shares(self):
+        """Sets of values and pairs of networks, by a study: horizontal stress and the days of the readings are those of the set."""
+        import shares
+        folder = self.chain.new_folder()
+        (folder / "scene.toml").write_text(shares.with_variables(self.variant("--cutting", "2", "5", "--end", "1999-12-31")))
+        rows = shares.shares_of_range(4)
+        (folder / "points.csv").write_text(shares.table_of(rows))
+        (folder / "study.toml").write_text(shares.study_of(["N185", "S160"], datetime.date(1999, 12, 31)))
+        study = study_file.read(folder / "study.toml")
+        self.assertEqual(study.design.networks_given, list(range(8)))
+        self.assertEqual(len(study.quantities), 4)
+        values = shares.values_of_set(rows[3])
+        scene = scene_keys.changed(tomllib.loads((folder / "scene.toml").read_text()),
+                                              {f"variables.{one.name}": one.values[7] for one in study.parameters})
+        with h5py.File(self.chain.network(scene_keys.toml_text(scene))) as file:
+            made = tomllib.loads(file["/scene"][0].decode())
+        own = tomllib.loads(self.chain.text(SCENE))
+        level = made["in_situ_stress"]["profile"][4]
+        self.assertAlmostEqual(level["depth_m"], values["cover"] + values["weak"])
+        self.assertAlmostEqual(level["compression_xx_MPa"], shares.variant.horizontal_stress(
+            level["depth_m"], values["tectonic"], values["gradient"], values["decay"]))
+        self.assertAlmostEqual(level["compression_yy_MPa"], 9.81e-6 * (2550 * values["cover"] + 2700 * values["weak"]))
+        self.assertAlmostEqual(made["point"][0]["first_reading"] - values["readings"],
+                               (own["point"][0]["first_reading"] - own["schedule"]["start"]).days)
+        self.assertAlmostEqual(made["section"]["outline_m"][1][0], values["domain"])
+        positions = {"N185": 94.0, "S160": -66.5}
+        runs = {"total N185 (mm)": [-3.0, -4, -5, float("nan")], "total S160 (mm)": [5.0, 6, 7, 8],
+                "recorded N185 (mm)": [-1.0, -2, -3, -4], "recorded S160 (mm)": [3.0, 4, 5, 6]}
+        kept, pairs = shares.pairs_of({name: numpy.array(column) for name, column in runs.items()}, list(positions), positions)
+        self.assertEqual(kept.tolist(), [0])
+        self.assertEqual(pairs.tolist(), [[[3, 5, 1, 3], [4, 6, 2, 4]]])
 
     def test_shares_of_a_closed_form(self):
         """Logarithms linear in two inputs and in the network: shares of the logarithm's variance are known, and for small ones

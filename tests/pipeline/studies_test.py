@@ -1613,6 +1613,90 @@ class StudyFile(Studies):
             self.assertIn(expected, done.stderr)
 
 
+TABLE = """
+scene = "scene.toml"
+
+[[vary]]
+network = true
+
+[[vary]]
+name = "friction"
+key = "joint_material.joint.friction_angle_deg"
+
+[design]
+kind = "table"
+file = "points.csv"
+
+[[collect]]
+name = "floor"
+what = "displacement"
+point = "floor"
+component = "y"
+above = [0.1]
+
+[[collect]]
+what = "blocks"
+statistic = "number"
+"""
+
+
+class Tables(Studies):
+    """Designs that a file has."""
+
+    def test_runs_of_a_table_are_those_of_a_plain_study(self):
+        """The design.csv of a study is a table, in any order of runs; a run has the same values then. Nothing has an interval."""
+        plain = TABLE.replace('kind = "table"\nfile = "points.csv"', "runs = 12").replace("_deg\"\n", "_deg\"\nvalues = [30, 35.5, 41]\n")
+        first = self.made(self.written(plain), self.folder / "plain")
+        lines = (first / "design.csv").read_text().splitlines()
+        (self.folder / "points.csv").write_text("\n".join([lines[0], *reversed(lines[1:])]) + "\n")
+        out = self.made(self.written(TABLE), self.folder / "out", "-j", "2")
+        rows, again = ((one / "runs.csv").read_text().splitlines()[1:] for one in (first, out))
+        self.assertEqual([row.split(",", 1)[1] for row in again], [row.split(",", 1)[1] for row in reversed(rows)])
+        one, other = jointcreep.read(first), jointcreep.read(out)
+        self.assertTrue(np.isnan(other.answers["low"]).all() and np.isnan(other.answers["high"]).all())
+        self.assertEqual(set(other.answers["runs"]), {12})
+        self.assertAlmostEqual(one.answer("mean", "floor")[0], other.answer("mean", "floor")[0], delta=1e-12)
+        self.assertAlmostEqual(one.answer("probability above 0.1, of stable runs", "floor")[0],
+                               other.answer("probability above 0.1, of stable runs", "floor")[0])
+        for name in ("input", "measure", "value"):
+            self.assertEqual(other.shares[name].tolist(), one.shares[name].tolist())
+        self.assertTrue(np.isfinite(one.shares["low"]).all() and np.isnan(other.shares["low"]).all())
+        (self.folder / "points.csv").unlink()  # the folder has its own
+        done = in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "page.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("30 to 41", (self.folder / "page.html").read_text())
+
+    def test_a_table_without_the_network(self):
+        (self.folder / "points.csv").write_text("friction\n35\n36\n37\n")
+        out = self.made(self.written(TABLE.replace("[[vary]]\nnetwork = true\n", "")), self.folder / "out")
+        self.assertEqual((out / "design.csv").read_text(), "run,network,friction\n0,0,35\n1,0,36\n2,0,37\n")
+        (self.folder / "points.csv").write_text("friction\n35\n36\n38\n")
+        done = self.study(self.folder / "study.toml", out)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has runs of another study: [[vary]] changed", done.stderr)
+
+    def test_tables_that_are_none_are_refused(self):
+        self.refused(TABLE, r"points.csv: No such file")
+        for text, expected in (
+                ("network,friction\n1,30\n", "points.csv: has 1 runs; expected a line of names, and a line for each of two"),
+                ("network\n1\n2\n", 'points.csv, line 1: has no columns "friction"; expected one for each'),
+                ("network,friction,friction\n1,2,3\n1,2,3\n", 'line 1: has 2 columns "friction"'),
+                ("network,friction,cohesion\n1,2,3\n1,2,3\n", r'line 1: no \[\[vary\]\] has the name "cohesion"; expected columns friction, network'),
+                ("network,friction\n1,30\n2\n", "line 3: has 1 values; expected 2"),
+                ("network,friction\n1,30\n2,\n", "line 3: has 1 values; expected 2"),
+                ("network,friction\n1,30\n-2,31\n", "line 3: network is -2; expected a whole number from 0"),
+                ("network,friction\n1,30\n1.5,31\n", "line 3: network is 1.5; expected a whole number from 0"),
+                ("network,friction\n1,30\n1,steep\n", "friction_angle_deg\" is 35 in the scene; expected values of the same kind")):
+            (self.folder / "points.csv").write_text(text)
+            self.refused(TABLE, expected)
+        (self.folder / "points.csv").write_text("network,friction\n1,30\n2,31\n")
+        self.refused(TABLE.replace("network = true", 'key = "joint_material.joint.cohesion_MPa"\nname = "c"'), 'has no columns "c"')
+        self.refused(TABLE.replace("[[vary]]\nnetwork = true\n", ""), r"network is 1; expected 0, or a \[\[vary\]\] with network = true")
+        self.refused(TABLE.replace('_deg"', '_deg"\nvalues = [1, 2]'), "values is unknown here, or does not go with the other keys")
+        self.refused(TABLE.replace('file = "points.csv"', ""), "file is missing")
+        self.refused(TABLE.replace('file = ', 'runs = 3\nfile = '), "runs is unknown here")
+
+
 class SceneKeys(unittest.TestCase):
     def test_a_scene_comes_back(self):
         import tomllib

@@ -66,6 +66,24 @@ TEST(shorthand, names_stand_for_numbers_and_keys_keep_their_lines)
             .ends_with("size_m = -396"));
 }
 
+TEST(shorthand, formulas_have_functions_and_powers)
+{
+    const auto value_of = [](const std::string& formula) {
+        const std::string text = "[variables]\nH = 40\n[zones]\nsize_m = ";
+        const std::string written = written_out(text + "\"" + formula + "\"", "scene");
+        return std::stod(written.substr(text.size()));
+    };
+    EXPECT_DOUBLE_EQ(value_of("3 * (1 - exp(-H / 20)) + 0.022 * H"), 3 * (1 - std::exp(-2.0)) + 0.88);
+    EXPECT_DOUBLE_EQ(value_of("H / tand(45)"), 40);
+    EXPECT_DOUBLE_EQ(value_of("sind(30) + cosd (60) + atand(1)"), 46);
+    EXPECT_DOUBLE_EQ(value_of("sqrt(H / 10) + ln(exp(3)) + abs(-H)"), 45);
+    EXPECT_DOUBLE_EQ(value_of("min(H, 3, 8) + max(1, -H)"), 4);
+    EXPECT_DOUBLE_EQ(value_of("-2 ^ 2 + 2 ^ 3 ^ 2 / 2 + 4 ^ -0.5"), 252.5);
+    EXPECT_TRUE(written_out("[zones]\nsize_m = \"sqrt(4)\"\n", "scene").ends_with("size_m = 2\n"));
+    EXPECT_TRUE(written_out("[variables]\nexp = 2\n[zones]\nsize_m = \"exp * 3\"\n", "scene")
+                    .ends_with("size_m = 6\n"));
+}
+
 TEST(shorthand, what_names_and_sums_cannot_be_is_refused)
 {
     const std::string head = "[variables]\nheight = 40\n";
@@ -77,10 +95,19 @@ TEST(shorthand, what_names_and_sums_cannot_be_is_refused)
         "scene, line 4: [zones] size_m = \"hieght\": [variables] has no hieght; did you mean height? (A "
         "number is written without quotes)");
     expect_part(refused("\"height +\""), "is missing at its end");
-    expect_part(refused("\"height 2\""), "\"2\" is no part of a sum");
+    expect_part(refused("\"height 2\""), "\"2\" is no part of a formula");
     expect_part(refused("\"(height\""), "a ( without its )");
     expect_part(refused("\"1 / (height - 40)\""), "not a finite number");
-    expect_part(refused("\"height,5\""), "is no part of a sum");
+    expect_part(refused("\"height,5\""), "is no part of a formula");
+    expect_part(refused("\"sin(height)\""),
+                "there is no function sin; expected one of abs, exp, ln, sqrt, sind");
+    expect_part(refused("\"exp(height, 2)\""), "exp has 2 values; expected one");
+    expect_part(refused("\"max(height)\""), "max has 1 values; expected two or more");
+    expect_part(refused("\"max(height, 2\""), "a ( without its )");
+    expect_part(refused("\"min(1 / 0, height)\""), "a value of min is not a finite number");
+    expect_part(refused("\"min(sqrt(-1), height)\""), "sqrt of -1 is not a finite number");
+    expect_part(refused("\"max(height, (-8) ^ 0.5)\""), "a power in it is not a finite number");
+    expect_part(refused("\"exp()\""), "does not begin with a number or a name");
     expect_part(refused("\"" + std::string(300, '(') + "height\""), "nested too deep");
     expect_part(error_of("[variables]\na = \"b\"\nb = \"a\"\n"), "depends on itself");
     expect_part(error_of("[variables]\n\"a b\" = 1\n"), "expected a name of letters");
