@@ -10,8 +10,8 @@
 // LIST      a line for each set: READINGS.csv, numbers of the networks to fit (1,4,5), options of creepfit for errors
 //
 // Prints CSV, a row for each set and factor, as soon as it is known. With several networks there is a row for the first of
-// them by itself (networks is 1), and one for the first 2, 3, 5, 10, 20 (estimation/across.hpp). Where there is no fit, value is
-// empty, and so are bounds that are infinite.
+// them by itself (networks is 1), and one for the first 2, 3, 5, 10, 20 (estimation/across.hpp). Where there is no fit, or
+// one that ended at a wrong minimum and has no intervals, value is empty, and so are bounds that are infinite.
 
 #include "creepfit_errors.hpp"
 #include "creepfit_factors.hpp"
@@ -267,7 +267,7 @@ void fit(const Trial& trial, std::deque<NetworkFits>& networks, back_analysis::S
             measurements.front().deviation.has_value() && !trial.errors.robust && !trial.errors.correlated;
         const back_analysis::Found found =
             back_analysis::fit(network.scene, network.section, measurements, settings);
-        if (!found.minimum.is_converged) {
+        if (!found.minimum.is_converged || found.better) { // without intervals
             for (const std::size_t together : counts)
                 if (together > models.size() && together <= trial.networks.size())
                     print_row(trial, together, ",,,,,,");

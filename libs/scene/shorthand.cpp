@@ -171,8 +171,9 @@ private:
         {
             const double value = sum();
             if (next() != '\0')
-                refuse("\"" + std::string(rest) +
-                       "\" is no part of a formula of numbers and names of [variables], such as \"2 * H + 3\"");
+                refuse(
+                    "\"" + std::string(rest) +
+                    "\" is no part of a formula of numbers and names of [variables], such as \"2 * H + 3\"");
             return value;
         }
         double sum()

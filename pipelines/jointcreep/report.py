@@ -14,7 +14,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from . import files, intervals, materials, plan, reading, study_file
+from . import files, intervals, materials, plan, reading
 from .errors import NotWanted
 from .quantities import MOVING, UNDECIDED
 

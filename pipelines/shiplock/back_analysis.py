@@ -2,11 +2,15 @@
 """Finds constants of the lock's joints back by creepfit, from noisy readings of the lock itself with other constants.
 
     back_analysis.py PROGRAMS SCENE.toml [--slip] -o OUT
+    back_analysis.py PROGRAMS SCENE.toml --sites 1 4 --networks 0 2 3 5 6 -o OUT
 
 The readings are those of a run of the same network whose joints have K times 1.2, and E and eta over K times 0.7:
 horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of
 1 mm (standard deviation) in each. Joints neither slip nor open, there and in the fit; with --slip they do both. In OUT:
 readings.csv, factors.csv, fitted.csv (for plot_fit.py), creepfit.txt and creepfit.md.
+
+With --sites the readings are of these networks, one after the other, and the fit does not know them: it has the first of
+--networks alone, and then all of them. OUT/sites.md has the factors found.
 """
 
 import argparse
@@ -21,6 +25,7 @@ import tempfile
 import tomllib
 
 import study
+from jointcreep import files
 
 MADE = {"joint-stiffness": 1.2, "kelvin-stiffness": 0.7, "kelvin-viscosity": 0.7}  # as creepfit's factors
 WORDS = {"joint-stiffness": "on K, with E and eta", "kelvin-stiffness": "on E", "kelvin-viscosity": "on eta"}
@@ -66,28 +71,76 @@ def markdown(factors, number, seconds):
     return "\n".join([*lines, "", *told]) + "\n"
 
 
-def analyse(programs, scene, slip, out):
-    law = [] if slip else ["--linear"]
+def written_readings(programs, scene, law, number, path):
+    """Writes the readings of a network as creepfit reads them. Returns how many there are."""
     result = study.computed(programs, scene, [*law, "--stiffness-times", MADE["joint-stiffness"],
-                                              "--kelvin-times", MADE["kelvin-stiffness"]], 0)
+                                              "--kelvin-times", MADE["kelvin-stiffness"]], number)
     with open(scene, "rb") as file:
         position = {point["name"]: point["at_m"][0] for point in tomllib.load(file)["point"]}
     rows = list(readings(result, position))
+    with open(path, "w", encoding="utf-8") as file:
+        print("time_day,point,component,displacement_mm,sigma_mm", file=file)
+        for day, name, value in rows:
+            print(f"{day:.12g},{name},x,{value:.4f},{SIGMA:g}", file=file)
+    return len(rows)
+
+
+def rows_in(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def found_words(row):
+    """A factor with its interval, and whether that has the true one."""
+    if not row["low_95"] or not row["high_95"]:
+        return "not resolved"
+    value, low, high = (float(row[name]) for name in ("value", "low_95", "high_95"))
+    return f"{value:.2f} ({low:.2f} to {high:.2f}){'' if low <= MADE[row['factor']] <= high else ', without the true one'}"
+
+
+def sites_markdown(found, networks):
+    """found: {site: (rows of the fit with one network, rows of that with all)}."""
+    words = "networks " + ", ".join(map(str, networks))
+    lines = [f"| readings of network | factor | made with | found with network {networks[0]} | found with {words} |", "|---|---|---|---|---|"]
+    for site, fits in found.items():
+        for one, several in zip(*fits, strict=True):
+            lines.append(f"| {site} | {WORDS[one['factor']]} | {MADE[one['factor']]} | {found_words(one)} | {found_words(several)} |")
+    return "\n".join(lines) + "\n"
+
+
+def analyse_sites(programs, scene, sites, networks, out):
+    """Readings of some networks, fitted with others."""
+    found = {}
+    with tempfile.TemporaryDirectory(dir=out, prefix="sites.partial-") as folder:
+        folder, joints = pathlib.Path(folder), []
+        for number in networks:
+            (folder / str(number)).mkdir()
+            joints.append(study.joints_of(programs, scene, ["--linear"], number, folder / str(number)))
+        for site in sites:
+            written_readings(programs, scene, ["--linear"], site, folder / "readings.csv")
+            fits = []
+            for some in (joints[:1], joints):
+                study.run(programs / "creepfit", *some, "--measurements", folder / "readings.csv", "--since-first-reading",
+                          "--fit", ",".join(MADE), "-o", folder / "factors.csv")
+                fits.append(rows_in(folder / "factors.csv"))
+            found[site] = fits
+            print(sites_markdown({site: fits}, networks), flush=True)
+    files.write_text(out / "sites.md", sites_markdown(found, networks))
+
+
+def analyse(programs, scene, slip, out):
+    law = [] if slip else ["--linear"]
     with tempfile.TemporaryDirectory(dir=out, prefix="creepfit.partial-") as folder:
         folder = pathlib.Path(folder)
         (folder / "chain").mkdir()
         joints = study.joints_of(programs, scene, law, 0, folder / "chain")
-        with open(folder / "readings.csv", "w", encoding="utf-8") as file:
-            print("time_day,point,component,displacement_mm,sigma_mm", file=file)
-            for day, name, value in rows:
-                print(f"{day:.12g},{name},x,{value:.4f},{SIGMA:g}", file=file)
+        number = written_readings(programs, scene, law, 0, folder / "readings.csv")
         before = processor_time()
         said = study.run(programs / "creepfit", joints, "--measurements", folder / "readings.csv",
                          "--since-first-reading", "--fit", ",".join(MADE), "--readings", folder / "fitted.csv",
                          "-o", folder / "factors.csv")
         seconds = processor_time() - before
-        with open(folder / "factors.csv", newline="", encoding="utf-8") as file:
-            (folder / "creepfit.md").write_text(markdown(list(csv.DictReader(file)), len(rows), seconds))
+        (folder / "creepfit.md").write_text(markdown(rows_in(folder / "factors.csv"), number, seconds))
         (folder / "creepfit.txt").write_text(said)
         for path in filter(pathlib.Path.is_file, folder.iterdir()):
             os.replace(path, out / path.name)
@@ -99,10 +152,15 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("--slip", action="store_true", help="joints slip and open")
+    parser.add_argument("--sites", type=int, nargs="+", metavar="NUMBER", help="networks of the readings, which the fit does not know")
+    parser.add_argument("--networks", type=int, nargs="+", default=[0, 2, 3, 5, 6], metavar="NUMBER", help="of the fit, with --sites")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     try:
-        analyse(arguments.programs, arguments.scene, arguments.slip, arguments.output)
+        if arguments.sites:
+            analyse_sites(arguments.programs, arguments.scene, arguments.sites, arguments.networks, arguments.output)
+        else:
+            analyse(arguments.programs, arguments.scene, arguments.slip, arguments.output)
     except study.Failed as error:
         sys.exit(f"back_analysis.py: {error}")
 

@@ -31,12 +31,15 @@ SHORTEST_EDGE = 0.1  # of blocks [m]: below that of the frozen networks, so that
 SMALLEST_ANGLE = 0.1  # [deg], the same
 COLUMNS = ("network", "variant", "zone_size_m", "creep_step_days", "increments")
 ZONES, STEP = 8, 28  # of the reference [m], [day]
-RUNS = [  # of the reference, by these columns; the last two show what smaller zones change
+RUNS = [  # of the reference, by these columns; the last five show what smaller zones, steps and increments change
     *((number, "elastic", ZONES, STEP, 1) for number in range(NETWORKS)),
     (0, "creep", ZONES, STEP, 1),
     (0, "slip", ZONES, STEP, 1),
     (0, "elastic", 4, STEP, 1),
     (0, "slip", 4, STEP, 1),
+    (0, "creep", 4, STEP, 1),
+    (0, "slip", ZONES, STEP / 2, 1),
+    (0, "slip", ZONES, STEP, 2),
 ]
 TOLERANCE = {"elastic": 0.005, "creep": 0.005, "slip": 0.02}  # of the largest displacement of a run
 MPA, DAY = 1e6, 86400.0

@@ -47,6 +47,7 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "stiffness-less": ("factor on K, E and eta", "1/2", ["--stiffness-times", "0.5"]),
     "stiffness-more": ("factor on K, E and eta", "2", ["--stiffness-times", "2"]),
     "rule-own": ("stiffness rule", "K itself", ["--rule", "K"]),
+    "rule-realized": ("stiffness rule", "K over realized k", ["--realized"]),  # of each network
     "rule-bridges": ("stiffness rule", "K/k beside rock bridges", ["--rule", "bridges"]),
     "table-2-by-rock": ("reading of Table 2", "by rock, E = 2 K_n", ["--table-2", "by rock"]),
     "box-small": ("jointed box", "150 m to each side, above 90 m", ["--box", "150", "90"]),
@@ -66,6 +67,9 @@ SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings 
 
 def joints_of(programs, scene, options, number, folder):
     """The joints file of one network of a variant, made in the folder."""
+    if "--realized" in options:  # joint lines and traces do not depend on what changes
+        run(programs / "jointgen", scene, "--realization", number, "--quiet", "-o", folder / "own.h5")
+        options = [*options, folder / "own.h5"]
     run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
     return chain.joints_of(programs, folder / "scene.toml", folder, "--realization", number)
 

@@ -13,6 +13,8 @@ import math
 import re
 import tomllib
 
+import numpy as np
+
 from scene_text import NotWanted, write_variant
 
 WIDTH = 118  # of a line of the scene, in characters
@@ -180,6 +182,26 @@ def rule(name):
     return change
 
 
+def realized(path):
+    """K / k with the persistence of a network, whose file it is, in place of the sets' own: the length of its traces over that of their
+    lines, of all sets with the same k."""
+    import h5py
+    with h5py.File(path) as file:
+        set_of, start, end = (file[f"/joints/{name}"][:] for name in ("set", "from", "to"))
+        line, first, last = (file[f"/traces/{name}"][:] for name in ("joint", "from", "to"))
+        names = [name.decode() for name in file["/names/joint_set"][:]]
+        sets = {one["name"]: one["persistence"] for one in tomllib.loads(file["/scene"][0].decode())["joint_set"]}
+    k = np.array([sets[name] for name in names])[set_of]  # of each line
+    lines, traces = np.linalg.norm(end - start, axis=1), np.linalg.norm(last - first, axis=1)
+    found = {one: traces[k[line] == one].sum() / lines[k == one].sum() for one in set(k)}
+
+    def change(table, record, key, value):
+        if table == "joint_material" and key in SPRINGS + KELVIN:
+            return value * persistence_of(record) / found[persistence_of(record)]
+
+    return change
+
+
 def table_2(reading):
     """As printed: normal 480, tangential 1400. By rock: fresh 1400, weathered 480, in both directions."""
     def change(table, record, key, value):
@@ -325,7 +347,7 @@ def changes_of(arguments, scene):
     """The changes that the command line asks for, in its order of meaning."""
     given = vars(arguments)
     for name, make in (("section_b", lambda _: section_b(scene)), ("stress", stress), ("spacing_times", spacing),
-                       ("rule", rule), ("table_2", table_2), ("stiffness_times", stiffness),
+                       ("rule", rule), ("realized", realized), ("table_2", table_2), ("stiffness_times", stiffness),
                        ("kelvin_times", kelvin), ("youngs_modulus", youngs_modulus),
                        ("box", lambda of: box(scene, *of)), ("domain", lambda of: domain(scene, *of)),
                        ("zone_size", setting("zones", "size_m")), ("first_reading_days", first_reading), ("loads_times", loads),
@@ -358,6 +380,7 @@ def main():
     parser.add_argument("--stress", metavar="NAME", help="low, mid, high; or A,B,DECAY in MPa, MPa/m and m")
     parser.add_argument("--spacing-times", type=float, metavar="FACTOR", help="of all sets")
     parser.add_argument("--rule", choices=["K/k", "K", "bridges"], help="joint stiffness: bridges is K/k beside them")
+    parser.add_argument("--realized", metavar="NETWORK.h5", help="joint stiffness K/k with the persistence of this network")
     parser.add_argument("--table-2", choices=["as printed", "by rock"], help="reading of the Kelvin constants")
     parser.add_argument("--stiffness-times", type=float, metavar="FACTOR", help="K, E and eta of all joints")
     parser.add_argument("--kelvin-times", type=float, metavar="FACTOR", help="E and eta of all joints")

@@ -77,8 +77,10 @@ class Shiplock(ChainTest):
         """Each choice of the study changes the scene, and what it makes is one; section B-B too."""
         import study
         own = tomllib.loads(self.chain.text(SCENE))
-        for options in [["--section-b"], *(choice[2] for name, choice in study.CHOICES.items() if name != "scene")]:
+        network = self.chain.network(self.chain.text(SCENE))
+        for options in [["--section-b"], ["--monitoring-lines"], *(choice[2] for name, choice in study.CHOICES.items() if name != "scene")]:
             with self.subTest(options):
+                options = [*options, network] if options == ["--realized"] else options
                 text = self.variant(*options)
                 self.assertNotEqual(tomllib.loads(text), own)
                 self.chain.network(text)
@@ -102,6 +104,79 @@ class Shiplock(ChainTest):
         self.assertEqual([point["name"] for point in lower["point"]][:6], ["N212", "N195", "N180", "N165", "N150", "N139"])
         floor = min(y for stage in lower["stage"] for polygon in stage["remove_m"] for _, y in polygon)
         self.assertEqual(floor, 92.2)
+
+    def test_stiffness_by_the_realized_persistence(self):
+        """Set by set, where a set has its persistence alone: K and creep of its materials times k over that of the network."""
+        network = self.chain.network(self.chain.text(SCENE), "--realization", "3")
+        data, own = datasets(network), tomllib.loads(self.chain.text(SCENE))
+        new = {one["name"]: one for one in tomllib.loads(self.variant("--realized", network))["joint_material"]}
+        for name, k in (("J1", 0.25), ("J4", 0.15)):
+            lines = numpy.flatnonzero(data["/joints/set"] == list(data["/names/joint_set"]).index(name))
+            traces = numpy.isin(data["/traces/joint"], lines)
+            length = [sum(math.dist(a, b) for a, b in zip(data[f"/{table}/from"][rows], data[f"/{table}/to"][rows]))
+                      for table, rows in (("joints", lines), ("traces", traces))]
+            for one in own["joint_material"]:
+                if one["name"].endswith(f"k {k}"):
+                    for key, value in one.items():
+                        factor = k * length[0] / length[1] if "stiffness" in key or "viscosity" in key else None
+                        if factor:
+                            self.assertAlmostEqual(new[one["name"]][key] / value, factor, delta=1e-9)
+                        else:
+                            self.assertEqual(new[one["name"]][key], value)
+            self.assertTrue(0.5 < length[1] / length[0] / k < 1.5)
+
+    def test_monitoring_lines(self):
+        """Inclinometers behind the crests, extensometers into the walls; the same on both sides."""
+        lines = {one["name"]: one for one in tomllib.loads(self.variant("--monitoring-lines"))["monitoring_line"]}
+        self.assertEqual(sorted(lines), ["extensometer N", "extensometer S", "inclinometer N", "inclinometer S"])
+        for name, line in lines.items():
+            other = lines[name[:-1] + ("S" if name.endswith("N") else "N")]
+            for end in ("from_m", "to_m"):
+                self.assertEqual([-line[end][0], line[end][1]], other[end])
+        self.assertEqual(math.dist(lines["inclinometer N"]["from_m"], lines["inclinometer N"]["to_m"]), 120)
+        self.assertEqual(math.dist(lines["extensometer N"]["from_m"], lines["extensometer N"]["to_m"]), 30)
+
+    def test_rows_of_the_tuning(self):
+        """Two networks and three points, of which the first is a crest."""
+        import tuning
+        def result(*totals):
+            return {"names": ["N232", "N215", "S160"], "days": [0.0, 100.0, 2025.0], "total": [[0.0] * 3, [20.0] * 3, list(totals)],
+                    "first": [100] * 3, "there": [True] * 3, "start": "1994-06-15", "zones": 9}
+        point = {"N232": {"crest": True}, "N215": {}, "S160": {}}
+        targets = {"total_mm": [60, 90], "recorded_mm": [20, 40], "point": point, "end_of_record": datetime.date(1999, 12, 31)}
+        results = [result(44.0, 60.0, 100.0), result(46.0, 50.0, 80.0), {"failed": "falls"}]
+        cells = [cell.strip() for cell in tuning.row_of("spacings times 2", results, targets, [1, 2]).split("|")[1:-1]]
+        # medians 55 and 90, records 35 and 70: squares of -4/3, 1, 0.5 and 4
+        self.assertEqual(cells[:2], ["spacings times 2", "2"])
+        self.assertEqual(cells[2].split(" ± ")[0], f"{(16 / 9 + 1 + 0.25 + 16) / 4:.2f}")
+        self.assertEqual(cells[3:], ["72.5 (55.0 to 90.0; 24.7)", "N215 55.0", "52.5 (35.0 to 70.0; 24.7)", "S160 70.0", "N232 45.0",
+                                     "0 of 2 (0 to 84 %)"])
+        both = result(80.0, 62.0, 75.0)
+        both["total"][1] = [30.0, 30.0, 40.0]
+        self.assertTrue(tuning.row_of("", [both], targets, [1, 2]).endswith("| 1 of 1 (3 to 100 %) |"))
+        self.assertIn("| 0 | falls |", tuning.row_of("", results[2:], targets, [1, 2]))
+
+    def test_facts_of_the_networks(self):
+        """Of three networks whose numbers are easy: medians, standard deviations, and words that have a direction."""
+        import facts
+        names = ["N232", "N215", "N170", "N160", "S215", "S160"]
+        def network(shift):
+            total = numpy.array([50.0, 62, 70, 85, 61, 80]) + shift
+            return {"names": names, "pier": [20 + shift, -10.0], "tension": [0.1, 0.01, 2e6], "total": total, "recorded": total - 40,
+                    "other": [30.0 + shift, 50.0], "after": [0.5] * 6, "before": [1.0, 2, 3, 4, 5, 6 + shift]}
+        targets = {"total_mm": [60, 90], "recorded_mm": [20, 40], "wall_top_limit_mm": 50, "slope_top_limit_mm": 80, "after_1999_mm": 5,
+                   "point": {"N232": {"crest": True}}}
+        text = facts.markdown([network(-2.0), network(0.0), network(2.0)], targets)
+        self.assertRegex(text, r"total: the median nearest to an end of 60-90 mm is that of S215, 61\.0 mm, with a standard error of 1\.\d mm")
+        self.assertIn("recorded: the median nearest to an end of 20-40 mm is that of N160, 45.0 mm", text)
+        self.assertIn("the largest total of wall tops is 85 mm; the published limit, by another model, is 50 mm", text)
+        self.assertIn("the largest total of all other points is 70 mm; the published limit, by another model, is 80 mm", text)
+        self.assertIn("moved by 1 to 6 mm (medians; at most 8 mm in any network)", text)
+        self.assertIn("N170 30.0 mm from 1997-04-30, S160 50.0 mm from 1997-10-31", text)
+        self.assertIn("the north has moved more than the south in 3 of the 3 networks", text)
+        self.assertIn("the pier widens at 150 m by 30 (28 to 32) mm, in 3 of 3 networks; its middle moves by 5 mm to the north on average, "
+                      "with a standard deviation of 1 mm", text)
+        self.assertIn("10 percent of the rock in the jointed box is in tension, 1.0 percent above 1.5 MPa, up to 2 MPa", text)
 
     def test_loads_times(self):
         """Weight, stress and strengths, and nothing else; the scene of the updated geometry is one."""
@@ -430,6 +505,17 @@ class Shiplock(ChainTest):
         for one in errors:
             self.assertAlmostEqual(numpy.std(one), 1, delta=0.08)  # five standard errors
         self.assertTrue(0.6 < numpy.std([numpy.mean(one) for one in errors]) < 1.4)  # of the first reading; four of them
+
+    def test_table_of_sites_of_other_networks(self):
+        import back_analysis
+        def row(factor, value, low, high):
+            return {"factor": factor, "value": value, "low_95": low, "high_95": high}
+        one = [row("joint-stiffness", "1.25", "1.1", "1.3"), row("kelvin-viscosity", "9", "8", "10")]
+        several = [row("joint-stiffness", "1.2", "1", "1.4"), row("kelvin-viscosity", "", "", "")]
+        lines = back_analysis.sites_markdown({4: (one, several)}, [0, 2]).splitlines()
+        self.assertEqual(lines[0].split(" | ")[3:], ["found with network 0", "found with networks 0, 2 |"])
+        self.assertEqual(lines[2:], ["| 4 | on K, with E and eta | 1.2 | 1.25 (1.10 to 1.30) | 1.20 (1.00 to 1.40) |",
+                                     "| 4 | on eta | 0.7 | 9.00 (8.00 to 10.00), without the true one | not resolved |"])
 
     def test_table_of_the_back_analysis(self):
         """Correlations are those of pairs, each once; a weak combination is told where there is one."""
