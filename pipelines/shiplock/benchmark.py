@@ -38,7 +38,7 @@ RUNS = [  # of the reference, by these columns; the last five show what smaller 
     (0, "elastic", 4, STEP, 1),
     (0, "slip", 4, STEP, 1),
     (0, "creep", 4, STEP, 1),
-    (0, "slip", ZONES, STEP / 2, 1),
+    (0, "slip", ZONES, STEP // 2, 1),
     (0, "slip", ZONES, STEP, 2),
 ]
 TOLERANCE = {"elastic": 0.005, "creep": 0.005, "slip": 0.02}  # of the largest displacement of a run
