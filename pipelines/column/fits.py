@@ -273,14 +273,16 @@ def is_warned(group):
 
 
 def add_coverage(table, site, cases, found, n, failed, names_unresolved=False):
-    """A factor at a bound has the interval from 0 to infinity, and is named as not resolved or as at its bound."""
+    """Shares of the fits with a result. A factor at a bound has the interval from 0 to infinity, and is named as not resolved or as at
+    its bound."""
     for name, groups in groups_of(found, n):
         done = [group for group in groups if group]
-        shares = [sum(holds(group[factor], truth) for group in done) / n for factor, truth in TRUTH.items()]
-        if not all(is_95(share, n) for share in shares):
+        shares = [sum(holds(group[factor], truth) for group in done) / max(1, len(done)) for factor, truth in TRUTH.items()]
+        if not done or not all(is_95(share, len(done)) for share in shares):
             failed.append(f"{site}, {name}")
         warned = sum(is_warned(group) for group in done)
-        unresolved = [sum(group[factor]["resolved"] == "no" or not group[factor]["high_95"] for group in done) / n for factor in TRUTH]
+        unresolved = [sum(group[factor]["resolved"] == "no" or not group[factor]["high_95"] for group in done) / max(1, len(done))
+                      for factor in TRUTH]
         table.add(site, name, " ".join(cases[name][1]), n, *(f"{share:.4f}" for share in shares), f"{warned / n:.3f}", n - len(done),
                   *([" ".join(f"{share:.3f}" for share in unresolved)] if names_unresolved else []))
 

@@ -123,7 +123,10 @@ def one_call(campaign, kept):
     is_refused = tried.code == 2 or tried.code not in (0, 3, HANGS) and ended(solve, LONGEST).code == tried.code
     shutil.rmtree(folder)
     if tried.code in (0, 3):
-        recovered(campaign, CALLS, name, kept / "joints.h5", options)
+        try:
+            recovered(campaign, CALLS, name, kept / "joints.h5", options)
+        except SystemExit as error:  # of the run that is not disturbed; the others go on
+            campaign.count(CALLS, "different", name, str(error))
     elif tried.code == HANGS:
         campaign.count(CALLS, "too long", name)
     elif is_refused:  # as the test wants; or its options do not go with checkpoints
