@@ -37,6 +37,7 @@ Files::Files(const Arguments& arguments, const std::string& program, const store
       provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
 {
     store::check_writable(output_);
+    store::check_writable(failed_);
     std::vector<NamedFile> written = arguments.files({"output", "checkpoint"});
     written.push_back({failed_, failed_ + ", which a run without equilibrium writes,"});
     if (has_checkpoint() && arguments.has("factor-of-safety"))

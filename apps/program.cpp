@@ -7,7 +7,9 @@
 
 #include <boost/program_options.hpp>
 
+#include <fcntl.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -15,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <csignal>
@@ -27,7 +30,6 @@
 #include <span>
 #include <sstream>
 #include <system_error>
-#include <thread>
 
 namespace jointcreep
 {
@@ -177,6 +179,72 @@ void complain(const std::string& program, std::string_view message)
         room[i] = 0;
 }
 
+// The stack of OpenMP's threads as the environment has it [bytes]; 0 is the default. In kilobytes, or with a unit.
+std::size_t openmp_stack()
+{
+    const char* text = std::getenv("OMP_STACKSIZE");
+    if (text == nullptr)
+        text = std::getenv("GOMP_STACKSIZE");
+    if (text == nullptr)
+        return 0;
+    char* end = nullptr;
+    const unsigned long long number = std::strtoull(text, &end, 10);
+    const std::size_t unit = std::string("bkmg").find(static_cast<char>(std::tolower(*end)));
+    const std::size_t power = *end == '\0' || unit == std::string::npos ? 1 : unit;
+    return end == text ? 0 : static_cast<std::size_t>(number) << (10 * power);
+}
+
+// Threads that wait until they are let go, with the stack of OpenMP's.
+class Team
+{
+public:
+    Team()
+    {
+        pthread_attr_init(&attributes_);
+        if (const std::size_t stack = openmp_stack(); stack > 0)
+            pthread_attr_setstacksize(&attributes_,
+                                      stack); // too small: refused, and the default stays, as in OpenMP
+    }
+    Team(const Team&) = delete;
+    Team& operator=(const Team&) = delete;
+    ~Team()
+    {
+        all_.count_down();
+        for (const pthread_t thread : threads_)
+            pthread_join(thread, nullptr);
+        pthread_attr_destroy(&attributes_);
+    }
+    // Starts another one; 0, or the number of the error.
+    int start()
+    {
+        threads_.reserve(threads_.size() + 1);
+        pthread_t thread{};
+        const auto wait = [](void* all) -> void* {
+            static_cast<std::latch*>(all)->wait();
+            return nullptr;
+        };
+        const int error = pthread_create(&thread, &attributes_, wait, &all_);
+        if (error == 0)
+            threads_.push_back(thread);
+        return error;
+    }
+
+private:
+    pthread_attr_t attributes_{};
+    std::latch all_{1};
+    std::vector<pthread_t> threads_{};
+};
+
+// A descriptor that is closed would be that of the next file that is opened, and messages would go into it. Writing to
+// standard output still fails then.
+void open_closed_descriptors()
+{
+    for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(number, F_GETFD) == -1)
+            open("/dev/null",
+                 number == STDERR_FILENO ? O_WRONLY : O_RDONLY); // the lowest that is free: this one
+}
+
 // The path without links, as far as it exists.
 std::filesystem::path without_links(const std::filesystem::path& path)
 {
@@ -256,6 +324,11 @@ void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<Na
             if (is_same_file(file->path, other.path))
                 throw input_error(file->name + " is the same file as " + other.name +
                                   "; give it another name");
+        for (const NamedFile& input : read)
+            if (store::is_partial_of(file->path, input.path))
+                throw input_error(
+                    file->name + ": " + input.name +
+                    " is called as an unfinished file of it, which would be removed; rename it");
     }
 }
 
@@ -340,26 +413,19 @@ int Arguments::threads(const std::string& option) const
 {
     const auto wanted = static_cast<int>(whole_number(option, 1, 1024).value_or(1));
     // OpenMP ends the program where it cannot start its threads. So the same number is started here first.
-    std::latch all(1);
-    std::vector<std::jthread> team;
-    try {
-        while (static_cast<int>(team.size()) + 1 < wanted)
-            team.emplace_back([&all] { all.wait(); });
-    } catch (const std::system_error& error) {
-        const std::string started = std::to_string(team.size() + 1);
-        all.count_down();
-        throw input_error("--" + option + " " + std::to_string(wanted) + ": only " + started +
-                          " could be started here (" + error.code().message() + "); expected fewer");
-    } catch (...) {
-        all.count_down();
-        throw;
-    }
-    all.count_down();
+    Team team;
+    for (int started = 1; started < wanted; ++started)
+        if (const int error = team.start())
+            throw input_error("--" + option + " " + std::to_string(wanted) + ": only " +
+                              std::to_string(started) + " could be started here (" +
+                              std::generic_category().message(error) + "); expected fewer" +
+                              (openmp_stack() > 0 ? ", or another OMP_STACKSIZE" : ""));
     return wanted;
 }
 
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
+    open_closed_descriptors();
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
     // Large arrays are allocated and freed often. Returning them to the system costs up to a tenth of the run.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);

@@ -5,6 +5,7 @@
 #include "model/polygon.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <random>
 
@@ -18,6 +19,11 @@ namespace
 
 // Measured, two sets of lines with 1e6 to 9e6 crossings (docs/cutting.md); where many joints meet in a point, less.
 constexpr double seconds_of_a_crossing = 4e-6;
+
+// Of a square with sides of the shortest edge through which m joints go: merging moves them onto each other again and
+// again. Measured, 200 to 1500 joints in bands of one to a hundred of these edges (docs/cutting.md).
+constexpr double seconds_of_a_crowd = 1e-12, power_of_a_crowd = 4;
+constexpr double longest_crowd = 3600; // [s], refused beyond it
 
 bool cross_in(const Box& box, const Vector2d& p, const Vector2d& p_to, const Vector2d& q,
               const Vector2d& q_to)
@@ -48,6 +54,40 @@ std::string advice_for(const Scene& scene, Index set)
     if (of.kind == SetKind::lines)
         return of.density ? "Reduce its density" : "Increase its spacing";
     return std::string("Reduce its density or its ") + (of.kind == SetKind::discs ? "diameter" : "length");
+}
+
+// How long joints take that come closer to each other than the shortest edge over a long way [s]: from how many pass by
+// random places on joints, always the same ones.
+double seconds_of_crowds(const Scene& scene, const Joints& joints)
+{
+    const std::size_t count = joints.set.size();
+    const double near = scene.cutting.shortest_edge / 2;
+    if (count < 2 || !(near > 0))
+        return 0;
+    std::vector<double> until(count); // length of joints up to each one
+    double length = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        until[i] = length += (joints.to[i] - joints.from[i]).norm();
+    if (!(length > 0))
+        return 0;
+    const std::size_t tries = std::clamp<std::size_t>(std::size_t{20'000'000} / count, 10, 300);
+    std::mt19937_64 random; // NOLINT: the same places in every run
+    double sum = 0;
+    for (std::size_t t = 0; t < tries; ++t) {
+        const double at = static_cast<double>(random() >> 11) * 0x1p-53 * length;
+        const auto on = std::min<std::size_t>(
+            static_cast<std::size_t>(std::ranges::upper_bound(until, at) - until.begin()), count - 1);
+        const Vector2d way = joints.to[on] - joints.from[on];
+        const Vector2d place = joints.to[on] - (until[on] - at) / std::max(way.norm(), near) * way;
+        double crowd = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vector2d d = joints.to[i] - joints.from[i], o = place - joints.from[i];
+            const double along = std::clamp(o.dot(d) / std::max(d.squaredNorm(), near * near), 0.0, 1.0);
+            crowd += (o - along * d).squaredNorm() <= near * near ? 1 : 0;
+        }
+        sum += std::pow(crowd, power_of_a_crowd - 1);
+    }
+    return seconds_of_a_crowd * length / scene.cutting.shortest_edge * sum / static_cast<double>(tries);
 }
 
 } // namespace
@@ -90,6 +130,11 @@ ExpectedCrossings expected_crossings(const Joints& joints, const Box& box)
 
 void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
 {
+    if (const double seconds = seconds_of_crowds(scene, joints); seconds > longest_crowd)
+        throw input_error(
+            "joints come closer to each other than shortest_edge_m = " + shown(scene.cutting.shortest_edge) +
+            " over long distances: cutting would take about " + rounded(seconds / longest_crowd, 2) +
+            " hours. Give fewer joints that are nearly parallel there, or a smaller shortest_edge_m");
     if (pairs_of(joints) <= most_crossings)
         return;
     const ExpectedCrossings expected = expected_crossings(joints, box);
@@ -103,12 +148,13 @@ void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
 
 CuttingCost expected_cost(const Scene& scene, const Joints& joints)
 {
-    if (pairs_of(joints) * seconds_of_a_crossing < 1)
+    const double of_crowds = seconds_of_crowds(scene, joints);
+    if (pairs_of(joints) * seconds_of_a_crossing + of_crowds < 1 || of_crowds > longest_crowd)
         return {};
     const double crossings = expected_crossings(joints, box_of(scene.outline)).number;
     if (crossings > most_crossings)
         return {};
-    return {crossings, crossings * seconds_of_a_crossing};
+    return {crossings, crossings * seconds_of_a_crossing + of_crowds};
 }
 
 } // namespace jointcreep::blocks

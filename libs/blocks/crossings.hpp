@@ -24,7 +24,8 @@ struct ExpectedCrossings {
 };
 ExpectedCrossings expected_crossings(const Joints& joints, const Box& box);
 
-// Throws input_error where more than `most_crossings` are expected.
+// Throws input_error where more than `most_crossings` are expected, or where joints lie so close beside each other that
+// merging would take hours.
 void check_crossings(const Scene& scene, const Joints& joints, const Box& box);
 
 } // namespace jointcreep::blocks

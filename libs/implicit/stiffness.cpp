@@ -57,10 +57,9 @@ void check_memory(Factor& factor)
     if (factor.cholmod().status == CHOLMOD_OUT_OF_MEMORY)
         throw std::bad_alloc();
 }
-template <class Matrix>
-void check_memory(Eigen::UmfPackLU<Matrix>& factor)
+void check_memory(UmfPackFactor& factor)
 {
-    if (factor.umfpackFactorizeReturncode() == UMFPACK_ERROR_out_of_memory)
+    if (factor.is_out_of_memory())
         throw std::bad_alloc();
 }
 #else
@@ -230,12 +229,14 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const Tangents& tan
     const std::lock_guard lock(one_at_a_time);
     if (!has_pattern_of_yielding_)
         yielding_factor_.analyzePattern(matrix);
+    check_memory(yielding_factor_);
     has_pattern_of_yielding_ = true;
     yielding_factor_.factorize(matrix);
     check_memory(yielding_factor_);
     if (yielding_factor_.info() != Eigen::Success)
         return {};
     VectorXd x = yielding_factor_.solve(right);
+    check_memory(yielding_factor_);
     return yielding_factor_.info() == Eigen::Success && x.allFinite() ? x : VectorXd();
 }
 

@@ -37,6 +37,18 @@ using mechanics::Vector2d;
 // Share of their springs that open and slipping contacts keep in the factor.
 constexpr double soft_in_factor = 1e-6;
 
+#ifdef JOINTCREEP_CHOLMOD
+// Says how UMFPACK's last call ended, of analysis, factorisation or solution: Eigen keeps only that of a factorisation.
+class UmfPackFactor : public Eigen::UmfPackLU<Eigen::SparseMatrix<double, Eigen::ColMajor, int>>
+{
+public:
+    bool is_out_of_memory() const
+    {
+        return static_cast<int>(m_umfpackInfo[UMFPACK_STATUS]) == UMFPACK_ERROR_out_of_memory;
+    }
+};
+#endif
+
 class Stiffness
 {
 public:
@@ -81,7 +93,7 @@ private:
     using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 #ifdef JOINTCREEP_CHOLMOD
     using Factor = Eigen::CholmodDecomposition<Matrix, Eigen::Lower>;
-    using UnsymmetricFactor = Eigen::UmfPackLU<Matrix>;
+    using UnsymmetricFactor = UmfPackFactor;
 #else
     using Factor = Eigen::SimplicialLLT<Matrix, Eigen::Lower>;
     using UnsymmetricFactor = Eigen::SparseLU<Matrix>;

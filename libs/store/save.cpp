@@ -118,8 +118,8 @@ private:
     Descriptor file_, lock_; // one open file: the lock lasts until both are closed
 };
 
-// Whether the name is that of a partial file of this output.
-bool is_partial_of(const std::string& output, const std::string& name)
+// Whether the name in the output's folder is that of a partial file of this output.
+bool has_partial_name(const std::string& output, const std::string& name)
 {
     const std::string begin = output + partial_mark;
     return name.size() > begin.size() && name.starts_with(begin) &&
@@ -134,7 +134,7 @@ void remove_leftovers(const fs::path& path)
     std::error_code ignored;
     for (fs::directory_iterator entry(folder_of(path), ignored), end; !ignored && entry != end;
          entry.increment(ignored))
-        if (is_partial_of(path.filename().string(), entry->path().filename().string()))
+        if (has_partial_name(path.filename().string(), entry->path().filename().string()))
             partial.push_back(entry->path());
     for (const fs::path& one : partial) {
         const Descriptor file(::open(one.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
@@ -161,8 +161,12 @@ void require_place(const std::string& path)
     };
     if (path.empty() || path.ends_with('/'))
         throw file_error("cannot write: this is not the name of a file");
-    const bool is_system = path.starts_with("/dev/") || path.starts_with("/proc/");
-    if (is_system && !path.starts_with("/dev/shm/")) // /dev/stdout is a link, which renaming would replace
+    // /dev/stdout is a link, which renaming would replace, however it is spelled.
+    std::error_code unreachable;
+    const fs::path in = fs::weakly_canonical(fs::absolute(folder_of(path)), unreachable);
+    const std::string place = (in / fs::path(path).filename()).string();
+    const bool is_system = place.starts_with("/dev/") || place.starts_with("/proc/");
+    if (is_system && !place.starts_with("/dev/shm/"))
         throw file_error(
             "cannot write: names in /dev and /proc are no files; expected a file, or - for text on standard output");
     if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
@@ -175,6 +179,15 @@ void require_place(const std::string& path)
         throw file_error("cannot write: " + folder.string() + " is not a folder");
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         fail("write into the folder " + folder.string());
+    constexpr std::size_t longest_number = 10; // of a partial file
+    const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+    const std::size_t length =
+        fs::path(path).filename().string().size() + std::strlen(partial_mark) + longest_number;
+    if (longest > 0 && length > static_cast<std::size_t>(longest))
+        throw file_error(
+            "cannot write: the name has more bytes than the folder allows a file, less those of " +
+            std::string(partial_mark) + "1234567890; expected a name that is " +
+            std::to_string(length - static_cast<std::size_t>(longest)) + " shorter");
 }
 
 } // namespace
@@ -208,6 +221,15 @@ void save_together(const std::vector<NamedBytes>& files)
     } catch (const file_error& error) {
         throw file_error(at + ": " + error.what());
     }
+}
+
+bool is_partial_of(const std::string& output, const std::string& path)
+{
+    std::error_code unreachable;
+    const fs::path folder = fs::weakly_canonical(fs::absolute(folder_of(output)), unreachable);
+    const fs::path file = fs::weakly_canonical(fs::absolute(path), unreachable);
+    return file.parent_path() == folder &&
+           has_partial_name(fs::path(output).filename().string(), file.filename().string());
 }
 
 void check_writable(const std::string& path)

@@ -23,4 +23,7 @@ struct NamedBytes {
 };
 void save_together(const std::vector<NamedBytes>& files);
 
+// Whether `path`, without links in it, is called as a partial file of `output`, which the next save() removes.
+bool is_partial_of(const std::string& output, const std::string& path);
+
 } // namespace jointcreep::store

@@ -340,7 +340,7 @@ def rank_correlations(study, rows, given, at):
 def chance_correlation(study, rows, given):
     """The largest rank correlation, without its sign, of two parameters that vary and for which the study has no [[correlation]]: their
     names, correlation, and number of sets of values. None if there are not two, or fewer than three sets."""
-    if study.design.kind in ("sobol indices", "directional sampling"):
+    if study.design.kind in ("sobol indices", "directional sampling", "table"):
         return None
     run = [row["run"] for row in rows if study.design.level(row["run"]) != "fine"]
     if study.design.kind == "networks x parameters":

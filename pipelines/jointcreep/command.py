@@ -299,15 +299,22 @@ def asks_for_help(arguments):
     return own in (["-h"], ["--help"]) or own[:1] and own[0] in SUBCOMMANDS and ("-h" in own or "--help" in own)
 
 
+def say(text):
+    """Writes a text to standard output. The exit code."""
+    try:
+        print(text, end="", flush=True)
+        return 0
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Python would try again as it ends
+        print(f"jointcreep: stdout could not be written: {error.strerror}", file=sys.stderr)
+        return 4
+
+
 def main(arguments, version, beside):
     """The exit code of the command line."""
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")  # it was closed
-    if asks_for_help(arguments):
-        print(__doc__, end="")
-        return 0
-    if arguments in (["-V"], ["--version"]):
-        print("jointcreep", version)
-        return 0
+    if asks_for_help(arguments) or arguments in (["-V"], ["--version"]):
+        return say(__doc__ if asks_for_help(arguments) else f"jointcreep {version}\n")
     try:
         subcommand, source, options = options_of(arguments)
         have_linear_algebra()

@@ -11,6 +11,8 @@ import sys
 import h5py
 import numpy as np
 
+from .errors import NotWanted
+
 NAMED = 20  # numbers that a line lists
 
 
@@ -53,8 +55,23 @@ def replaced(path):
             os.replace(partial, path)
     finally:
         for left in path.parent.glob(f"{glob.escape(path.name)}.partial-*"):
-            if left == partial or not pathlib.Path("/proc", left.name.rpartition("-")[2]).exists():
+            is_left = is_partial_of(path, left) and not left.is_symlink() and left.is_file()
+            if left == partial or is_left and not pathlib.Path("/proc", left.name.rpartition("-")[2]).exists():
                 left.unlink(missing_ok=True)
+
+
+def is_partial_of(output, path):
+    """Whether a path is called as a partial file of an output: NAME.partial- and a number, beside it."""
+    begin = f"{pathlib.Path(output).name}.partial-"
+    return path.name.startswith(begin) and path.name[len(begin):].isdecimal() and \
+        path.parent.resolve() == pathlib.Path(output).parent.resolve()
+
+
+def refuse_partial(output, inputs):
+    """Refuses inputs that are called as partial files of an output, because these are removed."""
+    for one in inputs:
+        if any(is_partial_of(output, path) for path in (pathlib.Path(one), pathlib.Path(one).resolve())):
+            raise NotWanted(f"-o {output}: the input {one} is called as an unfinished file of it, which would be removed; rename it")
 
 
 def write_text(path, text):

@@ -141,6 +141,7 @@ def run(source, options, programs, version):
     inputs = [source, *(pathlib.Path(options[name]) for name in ("poles", "window") if options.get(name))]
     if to_file and any(path.exists() and output.exists() and path.samefile(output) for path in inputs):
         raise NotWanted(f"-o {output} is the same file as an input; give it another name")
+    files.refuse_partial(output, inputs)
     if not options.get("window"):
         raise NotWanted("fit needs --window: x1,y1,x2,y2 in metres, or a scene file whose outline it is")
     if not source.exists():

@@ -163,7 +163,7 @@ def whole_lines(file, path):
     content = file.read()
     end = content.rfind(b"\n") + 1
     file.truncate(end)
-    return [plan.parsed(line, path) for line in content[:end].splitlines()]
+    return [plan.row_of(line, path) for line in content[:end].splitlines()]
 
 
 def guarded(make):

@@ -24,12 +24,32 @@ LINES = 5  # raised when lines of results change
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve"]
 
 
+def damaged(path):
+    return NotWanted(f"{path}: is damaged; remove the folder, or choose another one")
+
+
+def no_number(text):
+    raise ValueError(text)
+
+
 def parsed(text, path):
-    """JSON of a file of the folder."""
+    """JSON of a file of the folder: an object."""
     try:
-        return json.loads(text)
-    except ValueError:
-        raise NotWanted(f"{path}: is damaged; remove the folder, or choose another one") from None
+        found = json.loads(text, parse_constant=no_number)
+    except (ValueError, RecursionError):
+        raise damaged(path) from None
+    if not isinstance(found, dict):
+        raise damaged(path)
+    return found
+
+
+def row_of(text, path):
+    """A line of results of a group: of a run, or of a replicate of directional sampling."""
+    row = parsed(text, path)
+    has_values = isinstance(values := row.get("values"), list) and all(one is None or study_file.is_number(one) for one in values)
+    if not isinstance(row.get("run"), int) or not (has_values and "exit_code" in row or study_file.is_number(row.get("probability"))):
+        raise damaged(path)
+    return row
 
 
 def answer_of(program, *arguments):
@@ -143,6 +163,8 @@ def make(study, out, programs):
     path = out / "plan.json"
     if path.exists():
         old = parsed(path.read_bytes(), path)
+        if not isinstance(old.get("identity"), dict) or not all(isinstance(old.get(name), int) for name in ("runs", "group")):
+            raise damaged(path)
         changed = [name for name in what if old["identity"].get(name) != what[name]]
         if changed:
             raise NotWanted(f"{out} has runs of another study: {', '.join(changed)} changed. Choose another folder, or remove it")

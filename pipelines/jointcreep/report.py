@@ -41,7 +41,7 @@ CAPTIONS = {
 
 
 def escaped(text):
-    return html.escape(str(text))
+    return html.escape(str(text).encode("utf-8", "replace").decode())  # a file's name need not be UTF-8
 
 
 def cell(value):
@@ -456,6 +456,7 @@ def write(source, output, programs, pairs=None, window=None, others=(), notes=No
     read = [one for one in [*sources, notes] if one and not one.is_dir()]
     if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or any(os.path.samefile(output, one) for one in read)):
         raise NotWanted(f"{output}: is a folder, or a file that is read; expected the name of a report, such as report.html")
+    files.refuse_partial(output, read)
     first = of_notes(notes) if notes else []
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as name:
         folder = pathlib.Path(name)

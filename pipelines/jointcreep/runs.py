@@ -132,10 +132,12 @@ def read_rows(out):
     """Lines of results by the number of their run, without one that is cut off."""
     rows = {}
     for path in sorted((out / "groups").glob("*.rows*")):
+        if not path.is_file():
+            raise plan.damaged(path)
         with open(path, "rb") as file:
             for line in file:
                 if line.endswith(b"\n"):
-                    row = plan.parsed(line, path)
+                    row = plan.row_of(line, path)
                     rows[row["run"]] = row
     return rows
 
@@ -170,7 +172,7 @@ class Ended:
                     file.seek(self.read_to.get(name, 0))
                     new = file.read()
                     whole = new[:new.rfind(b"\n") + 1]
-                    for row in (plan.parsed(line, path) for line in whole.splitlines()):
+                    for row in (plan.row_of(line, path) for line in whole.splitlines()):
                         if "seconds" in row:
                             self.seconds[row["run"]] = row["seconds"]
                     self.read_to[name] = self.read_to.get(name, 0) + len(whole)

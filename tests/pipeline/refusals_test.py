@@ -3,6 +3,7 @@ comes before a lack of equilibrium, which is written beside the output."""
 
 import functools
 import pathlib
+import random
 import resource
 import shutil
 import subprocess
@@ -283,6 +284,26 @@ class Refusals(ChainTest):
                 if more:
                     said = running.stderr.read()
             self.assertRegex(said, "^$" if more else r"^jointgen: \d+ joints with about \S+ crossings: cutting may take [1-9]\d+ s\n$")
+
+    def band(self, count):
+        """A scene with so many joints whose ends are within 1 cm, half of the shortest edge, of a line."""
+        chance = random.Random(1)
+        return self.chain.small() + "".join(
+            f'\n[[joint]]\nname = "line {i}"\nmaterial = "joint"\nfrom_m = [0, {5.013 + chance.uniform(-.01, .01)}]\n'
+            f"to_m = [30, {5.013 + chance.uniform(-.01, .01)}]\n" for i in range(count))
+
+    def test_joints_beside_each_other_are_announced_or_refused(self):
+        """A few hundred joints in a band as narrow as the shortest edge take minutes, some thousand hours."""
+        folder = self.chain.new_folder()
+        (folder / "scene.toml").write_text(self.band(700))
+        command = [self.chain.programs / "jointgen", "scene.toml", "-o", "n.h5"]
+        with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as running:
+            said = running.stderr.readline()
+            running.kill()
+        self.assertRegex(said, r"^jointgen: \d+ joints with about \S+ crossings: cutting may take [1-9]\d+ s\n$")
+        (folder / "scene.toml").write_text(self.band(3000))
+        self.assert_refuses(BAD_INPUT, "jointgen", folder / "scene.toml",
+                            says=["scene.toml: joints come closer to each other than shortest_edge_m", "hours", "nearly parallel"])
 
     def test_creep_step_beyond_the_limit(self):
         """(1 - exp(-lam dT)) (1 + K/E) < 2 with K/E = 10 and lam = 0.01 per day: dT < 20.067 days."""

@@ -138,11 +138,13 @@ class Verify(ChainTest):
                              [held([0, 0], [6, 3], "normal"), held([-3, 6], [0, 0], "normal"),
                               {"from_m": [3, 9], "to_m": [-3, 6], "traction_MPa": [0, -1], "load_history": [[0, 0], [1, 1]]}],
                              [], points=[[0, 3]]))
+        if name == "factor of safety":
+            return run(text("data/verification/vertical-cut/scene.toml"), "--zone-size", 2, "--factor-of-safety")
         raise KeyError(name)
 
     RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds",
                "collapse", "displaced", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield",
-               "rollers")
+               "rollers", "factor of safety")
 
     def verified(self, path):
         """Exit code, lines of the table by the name of the check, and all that was said."""
@@ -207,6 +209,8 @@ class Verify(ChainTest):
         held = lambda file: (len(file["/states/time"]) - 1, int(np.argmax(np.abs(file["/states/reaction"][-1, :, 1]))), 1)
         rolls = lambda file: (len(file["/states/time"]) - 1, 1 + int(np.argmax(np.abs(file["/states/reaction"][-1, 1:, 0]))), 1)
         away = lambda file: tuple(int(i) for i in np.argwhere(file["/history/present"][:] == 0)[0])
+        staged = lambda name: lambda file: int(np.argmax([bool(one.strip(b"\0")) for one in file[name][:]]))
+        tried = lambda file: int(np.argmax(file["/safety/factor"][:] * (file["/safety/stands"][:] == 1)))
         s = "/states/"
         return [
             ("values are finite", "dilation", s + "slip", at(1, 0), put(np.nan)),
@@ -288,6 +292,20 @@ class Verify(ChainTest):
             ("report: stored energy of a stage is that of its states", "slope", "/equilibria/stored_energy",
              lambda file: int(np.argmin(file["/equilibria/stored_energy"])), times(1.0001)),
             ("report: dissipated energy is not negative, implicit engine", "slope", "/equilibria/dissipated_energy", at(-1), put(-1)),
+            ("times do not go back", "slope", "/history/time", at(-1), put(0.0)),
+            ("times are within the schedule", "slope", "/history/time", at(-1), more(1e4)),
+            ("times are within the schedule", "slope", "/equilibria/time", at(-1), more(1e4)),
+            ("stages are those of the scene, in its order", "slope", "/history/event", staged("/history/event"), put(b"x")),
+            ("stages are on their days", "slope", "/history/time", staged("/history/event"), more(1e-3)),
+            ("stages are on their days", "slope", s + "time", staged(s + "event"), more(1e-3)),
+            ("states have a row of the history", "slope", s + "time", at(-1), more(-1e-3)),
+            ("monitoring points are those of the scene", "slope", "/history/point", at(0), put(b"x")),
+            ("first readings are on their days", "slope", "/history/first_reading_row", at(0), put(6)),
+            ("stable strength reduction factors are below the unstable ones", "factor of safety", "/safety/factor",
+             at(0), put(60.0)),
+            ("this run ended as its strength reduction factor says", "factor of safety", "/safety/stands", tried, put(0)),
+            ("this run moved as far as its strength reduction factor says", "factor of safety", "/safety/largest_displacement", tried,
+             times(1.001)),
             ("moments of a dynamic analysis have their states", "collapse", "/dynamics/time", at(0), more(0.5)),
             ("dynamics: work of loads is kinetic, stored, lost or damped", "collapse", "/dynamics/work_of_loads", at(-1),
              times(1.1)),
