@@ -184,10 +184,10 @@ void require_place(const std::string& path)
     const std::size_t length =
         fs::path(path).filename().string().size() + std::strlen(partial_mark) + longest_number;
     if (longest > 0 && length > static_cast<std::size_t>(longest))
-        throw file_error(
-            "cannot write: the name has more bytes than the folder allows a file, less those of " +
-            std::string(partial_mark) + "1234567890; expected a name that is " +
-            std::to_string(length - static_cast<std::size_t>(longest)) + " shorter");
+        throw file_error("cannot write: with " + std::string(partial_mark) +
+                         "1234567890 the name is longer than the " + std::to_string(longest) +
+                         " bytes that the folder allows; expected one that is " +
+                         std::to_string(length - static_cast<std::size_t>(longest)) + " shorter");
 }
 
 } // namespace

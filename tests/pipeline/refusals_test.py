@@ -2,6 +2,7 @@
 comes before a lack of equilibrium, which is written beside the output."""
 
 import functools
+import os
 import pathlib
 import random
 import resource
@@ -227,6 +228,82 @@ class Refusals(ChainTest):
                 done = self.chain.answer(program, *arguments)
                 self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
                 self.assertNotEqual(done.stderr, "")
+
+    def test_inputs_that_are_called_as_unfinished_files(self):
+        """They would be removed as what a killed program has left; also through a link, and where another program reads them."""
+        folder = self.chain.new_folder()
+        for name in "scene.toml", "poles.csv", "traces.geojson":
+            shutil.copy(self.chain.source / "tests/pipeline/kinds" / name, folder)
+        text = (folder / "scene.toml").read_text().replace("traces.geojson", "n.h5.partial-12")
+        (folder / "mapped.toml").write_text(text)
+        shutil.copy(folder / "traces.geojson", folder / "n.h5.partial-12")
+        for output in "z.h5", "z.csv", "z.toml", "z.html":
+            shutil.copy(self.files["demsolve"], folder / f"{output}.partial-7")
+        (folder / "link.h5").symlink_to("z.h5.partial-7")
+        before = {path.name: path.read_bytes() for path in folder.iterdir()}
+        for program, *arguments, named in [
+            ("jointgen", "mapped.toml", "-o", "n.h5", "n.h5.partial-12"),
+            ("strength-averaging", "z.h5.partial-7", "-o", "z.h5", "z.h5.partial-7"),
+            ("demsolve", "link.h5", "-o", "z.h5", "link.h5"),
+            ("jointexport", "z.csv.partial-7", "-o", "./z.csv", "z.csv.partial-7"),
+            ("creepfit", self.files["demsolve"], "--fit", "joint-stiffness", "--measurements", "z.csv.partial-7", "-o", "z.csv", "z.csv.partial-7"),
+            ("jointcreep", "report", "z.html.partial-7", "-o", "z.html", ""),
+            ("jointcreep", "fit", "z.toml.partial-7", "--window", "0,0,1,1", "-o", "z.toml", "z.toml.partial-7"),
+        ]:
+            with self.subTest(program):
+                done = subprocess.run([self.chain.programs / program, *arguments], cwd=folder, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(named, done.stderr)
+                self.assertTrue("is called as an unfinished file" in done.stderr or not named, done.stderr)
+                self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
+
+    def test_names_that_cannot_be_outputs(self):
+        """Before the work: too long with the ending of an unfinished file; a folder where a failed run would be; /dev, however spelled."""
+        folder = self.chain.new_folder()
+        (folder / "d.failed.h5").mkdir()
+        (folder / "link").symlink_to("/dev")
+        for output, says in (("a" * 235 + ".h5", "the name is longer than the 255 bytes that the folder allows; expected one that is 2 shorter"),
+                             ("d.h5", "d.failed.h5: cannot write: there is a folder of this name"),
+                             ("//dev/stdout", "names in /dev and /proc are no files"), ("link/stdout", "names in /dev and /proc are no files")):
+            done = subprocess.run([self.chain.programs / "demsolve", self.files["demsolve"], "-o", output], cwd=folder, capture_output=True,
+                                  text=True)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertIn(says, done.stderr)
+
+    def test_closed_descriptors_are_not_those_of_files(self):
+        """A message would go into the file that is opened next."""
+        text = self.chain.text("data/slope/scene.toml")
+        joints = self.chain.joints(text)
+        def close():
+            for number in 0, 1, 2:
+                os.close(number)
+        with subprocess.Popen([self.chain.programs / "demsolve", joints, "-o", joints.with_name("r.h5"), "-q"], preexec_fn=close) as running:
+            deadline = time.monotonic() + 60
+            while not (folder := pathlib.Path(f"/proc/{running.pid}/fd") / "2").exists() and time.monotonic() < deadline:
+                time.sleep(0.01)
+            found = [os.readlink(folder.with_name(str(number))) for number in (0, 1, 2)]
+            running.kill()
+        self.assertEqual(found, ["/dev/null"] * 3)
+
+    def test_help_that_cannot_be_written(self):
+        for program in "jointgen", "demsolve", "jointcreep", "jointverify":
+            for option in "--help", "--version":
+                with open("/dev/full", "w") as full:
+                    done = subprocess.run([self.chain.programs / program, option], stdout=full, stderr=subprocess.PIPE, text=True)
+                self.assertEqual((done.returncode, len(done.stderr.splitlines())), (4, 1), done.stderr)
+                self.assertIn("stdout could not be written", done.stderr)
+
+    def test_stacks_of_threads(self):
+        """OpenMP's, as the environment has it: it would end the program without a name."""
+        def answer(size):
+            return subprocess.run([self.chain.programs / "demsolve", self.files["demsolve"], "--threads", "3", "-q", "-o",
+                                   self.chain.new_folder() / "r.h5"], capture_output=True, text=True, env={**os.environ, "OMP_STACKSIZE": size})
+        for size in "16k", "16384b", " 16":
+            done = answer(size)
+            self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+            self.assertIn("--threads 3: only 1 could be started here", done.stderr)
+            self.assertIn("expected fewer, or another OMP_STACKSIZE", done.stderr)
+        self.assertEqual(answer("8M").returncode, 0)
 
     def test_threads_that_cannot_start(self):
         def little_memory():

@@ -1613,6 +1613,41 @@ class StudyFile(Studies):
             self.assertIn(expected, done.stderr)
 
 
+class DamagedFolders(Studies):
+    def test_rows_that_are_none(self):
+        """Named with their file; a run's values are finite numbers or nothing."""
+        study = self.written(NETWORKS.format(runs=3))
+        out = self.made(study, self.folder / "out")
+        path = next((out / "groups").glob("*.rows"))
+        good = path.read_text()
+        line = good.splitlines()[0]
+        for bad in ('{"run": 0}', "[1, 2]", "[" * 100000, '"text"', line.replace('"values": [', '"values": [NaN, ', 1),
+                    line.replace('"values": [', '"values": [1e999, ', 1), line.replace('"values": [', '"values": ["a", ', 1)):
+            path.write_text(bad + "\n" + good.partition("\n")[2])
+            done = self.study(study, out)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"{path}: is damaged; remove the folder", done.stderr)
+        path.unlink()
+        os.mkfifo(path)
+        self.assertIn(f"{path}: is damaged", self.study(study, out).stderr)
+        path.unlink()
+        path.write_text(good)
+        for bad in "{}", "[]", '{"identity": 3, "runs": 3, "group": 1}':
+            (out / "plan.json").write_text(bad)
+            done = self.study(study, out)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"{out / 'plan.json'}: is damaged", done.stderr)
+
+    def test_a_file_whose_name_is_no_text(self):
+        source = self.chain.result(SCENE)
+        odd = os.fsdecode(os.fsencode(source.parent) + b"/r\xff.h5")
+        shutil.copy(source, odd)
+        done = self.chain.jointcreep("report", odd, "-o", self.folder / "page.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (self.folder / "page.html.partial-notes").mkdir()  # no leftover of a program
+        self.assertEqual(self.chain.jointcreep("report", source, "-o", self.folder / "page.html").returncode, 0)
+
+
 TABLE = """
 scene = "scene.toml"
 
