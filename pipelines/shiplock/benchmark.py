@@ -330,7 +330,7 @@ def comparison(path, folder, number, variant):
 
 def table_of(folder, variant):
     """Markdown of the horizontal displacements at the end."""
-    runs = {run[0]: reference_of(folder, *run)[-1] for run in RUNS if run[1:3] == (variant, ZONES)}
+    runs = {run[0]: reference_of(folder, *run)[-1] for run in RUNS if run[1:] == (variant, ZONES, STEP, 1)}
     names = [key.removesuffix("_x_mm") for key in runs[0] if key.endswith("_x_mm")]
     return "\n".join(["| network | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|",
                       *(f"| {n} | " + " | ".join(f"{float(row[name + '_x_mm']):.2f}" for name in names) + " |"
