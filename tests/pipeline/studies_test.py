@@ -776,7 +776,7 @@ class Failures(Studies):
         """They are read as they come, each once, also where the file of a group gets its final name."""
         out = self.chain.new_folder()
         (out / "groups").mkdir()
-        part, line = out / "groups" / "000000.rows.part", '{{"run": {0}, "seconds": {0}.5, "exit_code": 0}}\n'
+        part, line = out / "groups" / "000000.rows.part", '{{"run": {0}, "seconds": {0}.5, "exit_code": 0, "values": []}}\n'
         ended = runs.Ended(out)
         self.assertEqual(ended.look(["000000", "000001"]), [])
         part.write_text(line.format(0) + line.format(1)[:9])
@@ -1881,7 +1881,7 @@ class Intervals(unittest.TestCase):
     def test_crossed_without_scatter(self):
         """Where no run of a crossed design hits, or all do, the interval is that of as many runs as the fewer of its two sides; also
         where runs have no value."""
-        crossed = types.SimpleNamespace(design=types.SimpleNamespace(kind="networks x parameters", networks=8, parameters=5, runs=40))
+        crossed = types.SimpleNamespace(design=study_file.Design("networks x parameters", 1, 40, 8, 5, 0, 1, 0, ""))
         for run in (np.arange(40), np.arange(3, 38)):
             for hits, count in ((np.zeros(len(run), bool), 0), (np.ones(len(run), bool), 5)):
                 self.assertEqual(answers.share_with_interval(crossed, hits, run), intervals.probability(count, 5))
