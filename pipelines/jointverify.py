@@ -52,6 +52,7 @@ BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
 NOT_IN_FILE = 100  # times the strain between the first two states: at large displacements the in-situ equilibrium is found again
 MOVING_FORCE = 2  # times the mean force, in which contacts count by their sum on a gridpoint
+DASHPOTS = 10  # times that: after creep dashpots still carry a part, whose forces are not in the file
 ENERGY_OF_DYNAMICS = 0.01  # where the scene does not say
 ENERGY = 1e-8  # of other searches, with which only rounding is missing
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
@@ -1275,7 +1276,8 @@ class Verification:
             self.checks.leave_out("equilibrium of gridpoints in situ at large displacements, which is found again: dashpots carry part of "
                                   "it, whose forces are not in the file")
             at = at[:0]
-        see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at], allowed + rounding[at],
+        at_moment = self.moving_contacts is not None and self.moving_contacts.of_state(s) is not None
+        see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at], (1 if at_moment else DASHPOTS) * allowed + rounding[at],
             self.in_state("/states/stress", s, m.position, "gridpoint", at, "/states/displacement"))
 
         rows = self.moving_contacts.of_state(s) if self.moving_contacts else None
