@@ -645,6 +645,8 @@ class Verification:
         self.is_ended = self.scene.stop is not None and len(self.equilibria["time"]) <= sum(map(bool, self.states.event[moments]))
         self.moving |= set(range(int(moments[-1]), len(self.states.time))) if self.is_ended else set()
         self.is_at_rest = len(self.equilibria["time"]) > 0 or not self.file.has("/failure")
+        self.row_time, self.row_event = self.file.numbers("/history/time", "time"), self.file.texts("/history/event", "time")
+        self.points = self.file.texts("/history/point", "point")
 
     # Where a value is.
 
@@ -1276,11 +1278,11 @@ class Verification:
             self.checks.leave_out("equilibrium of gridpoints in situ at large displacements, which is found again: dashpots carry part of "
                                   "it, whose forces are not in the file")
             at = at[:0]
-        at_moment = self.moving_contacts is not None and self.moving_contacts.of_state(s) is not None
-        see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at], (1 if at_moment else DASHPOTS) * allowed + rounding[at],
+        rows = self.moving_contacts.of_state(s) if self.moving_contacts else None
+        see("displaced gridpoints without contacts are in equilibrium", "N/m", norm(sums)[at],
+            (DASHPOTS if rows is None else 1) * allowed + rounding[at],
             self.in_state("/states/stress", s, m.position, "gridpoint", at, "/states/displacement"))
 
-        rows = self.moving_contacts.of_state(s) if self.moving_contacts else None
         if rows is None:
             self.checks.leave_out("contacts of states at large displacements that are at no moment of a dynamic analysis")
             return
@@ -1315,9 +1317,7 @@ class Verification:
     def check_points(self):
         """Histories are the states' displacements at the points, where there is a state of a row's time."""
         m, st, file = self.section, self.states, self.file
-        time = file.numbers("/history/time", "time")
-        event = file.texts("/history/event", "time")
-        names = file.texts("/history/point", "point")
+        time, event, names = self.row_time, self.row_event, self.points
         places = file.numbers("/history/point_position", "point", 2)
         history = file.numbers("/history/displacement", "time", "point", 2)
         present = file.index("/history/present", 2, "time", "point")
@@ -1367,12 +1367,12 @@ class Verification:
 
     def check_times(self):
         """Times do not go back, are within the schedule, and each stage is on its day; states have a row of the history."""
-        file, st, scene = self.file, self.states, self.scene
+        st, scene = self.states, self.scene
         schedule = scene.table("schedule")
         end = scene.day(schedule["end"], "end") if "end" in schedule else np.inf
         days = {stage.get("name"): scene.day(stage.get("date"), "date") for stage in scene.list("stage")}
-        event = {"history": file.texts("/history/event", "time"), "states": st.event}
-        times = {"history": file.numbers("/history/time", "time"), "states": st.time}
+        event = {"history": self.row_event, "states": st.event}
+        times = {"history": self.row_time, "states": st.time}
         for group, time in (*times.items(), ("equilibria", self.equilibria["time"])):
             self.checks.see("times do not go back", "day", np.maximum(0, time[:-1] - time[1:]), 0,
                             lambda i, group=group: f"/{group}/time[{i + 1}]")
@@ -1393,14 +1393,13 @@ class Verification:
 
     def check_names(self):
         """Monitoring points are those of the scene, and their first readings are on its days."""
-        file, scene = self.file, self.scene
+        scene = self.scene
         wanted = [(point, str(point.get("name"))) for point in scene.list("point")]
         for line in scene.list("monitoring_line"):
             wanted += [(line, f"{line.get('name')} {i + 1}") for i in range(int(scene.number(line, "points", 0)))]
-        names = list(file.texts("/history/point", "point"))
-        self.checks.see("monitoring points are those of the scene", "", [one != name for one, (_, name) in zip(names, wanted)] or
-                        [len(names) != len(wanted)], 0.5, lambda i: f"/history/point[{i}]")
-        time, first = file.numbers("/history/time", "time"), file.array("/history/first_reading_row", "i", "point")
+        self.checks.see("monitoring points are those of the scene", "", [one != name for one, (_, name) in zip(self.points, wanted)] +
+                        [len(self.points) != len(wanted)], 0.5, lambda i: f"/history/point[{i}]")
+        time, first = self.row_time, self.file.array("/history/first_reading_row", "i", "point")
         for p, (row, (point, _)) in enumerate(zip(first, wanted)):
             day = scene.day(point["first_reading"], "first_reading") if "first_reading" in point else 0.0
             if 0 <= row < len(time) and day <= time[-1]:  # else it was not reached
@@ -1474,7 +1473,7 @@ class Verification:
 
     def check_stored_energy(self):
         """Of stages: what rock and joints that remain have stored after, less before."""
-        m, st, e = self.section, self.states, self.equilibria
+        st, e = self.states, self.equilibria
         stages = [s for s in range(1, self.n_small) if st.event[s] and st.time[s - 1] == st.time[s]]
         if not stages or not self.is_at_rest:
             return

@@ -31,7 +31,8 @@ enum class Subdivision { own, cgal };
 Blocks cut(const Scene& scene, const Joints& joints, Subdivision subdivision = Subdivision::own);
 
 // What cut() will cost, from pairs of joints and from how many of them lie closer than the shortest edge: crossings of
-// joints, and seconds on one processor, to a factor of three; less where many joints meet in a point. Zeros where it is less than a second, and where cut() will refuse.
+// joints, and seconds on one processor, to a factor of three; less where many joints meet in a point. Zeros where it is
+// less than a second, and where cut() will refuse.
 struct CuttingCost {
     double crossings = 0, seconds = 0;
 };

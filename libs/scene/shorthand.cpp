@@ -25,8 +25,6 @@ using Point = Eigen::Vector2d;
 
 constexpr std::int64_t usual_sides = 32, most_sides = 1000; // of a whole circle
 
-constexpr double radians = std::numbers::pi / 180; // of a degree, as all angles of a scene are
-
 // Functions of a formula. Those of angles have a d, for degrees, in their names.
 struct Function {
     std::string_view name;
@@ -42,10 +40,10 @@ const std::vector<Function>& functions()
         {"exp", 1, 1, [](Values x) { return std::exp(x[0]); }},
         {"ln", 1, 1, [](Values x) { return std::log(x[0]); }},
         {"sqrt", 1, 1, [](Values x) { return std::sqrt(x[0]); }},
-        {"sind", 1, 1, [](Values x) { return std::sin(radians * x[0]); }},
-        {"cosd", 1, 1, [](Values x) { return std::cos(radians * x[0]); }},
-        {"tand", 1, 1, [](Values x) { return std::tan(radians * x[0]); }},
-        {"atand", 1, 1, [](Values x) { return std::atan(x[0]) / radians; }},
+        {"sind", 1, 1, [](Values x) { return std::sin(x[0] * unit::deg); }},
+        {"cosd", 1, 1, [](Values x) { return std::cos(x[0] * unit::deg); }},
+        {"tand", 1, 1, [](Values x) { return std::tan(x[0] * unit::deg); }},
+        {"atand", 1, 1, [](Values x) { return std::atan(x[0]) / unit::deg; }},
         {"min", 2, most_values, [](Values x) { return *std::ranges::min_element(x); }},
         {"max", 2, most_values, [](Values x) { return *std::ranges::max_element(x); }}};
     return all;

@@ -118,7 +118,7 @@ class Design:
     coarse_per_fine: int = 0
     fine_options: list = dataclasses.field(default_factory=list)  # of demsolve, for fine runs
     coarse_options: list = dataclasses.field(default_factory=list)
-    networks_given: list = dataclasses.field(default_factory=list)  # of "table": that of each run, if it varies
+    networks_given: list = dataclasses.field(default_factory=list)  # of "table": that of each run
 
     def block(self):
         """Runs of "two levels" that belong together: a fine one, and coarse ones of which the first has the same network."""
@@ -416,9 +416,9 @@ def number_of(text):
 
 def table_design(table, varies_network, parameters, given):
     """The design of a table of runs, which has the values of the parameters, too. given: its file, or None: the one that the study names."""
-    path = given or table.path.parent / table.text("file")
-    table.left.pop("file", None)
+    named = table.path.parent / table.text("file")
     table.end()
+    path = given or named
     columns = table_of(path, [one.name for one in parameters] + [NETWORK] * varies_network, table.place("file"))
     runs = len(next(iter(columns.values())))
     if runs > MOST_RUNS:

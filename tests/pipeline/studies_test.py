@@ -1697,7 +1697,7 @@ class Tables(Studies):
             self.assertEqual(other.shares[name].tolist(), one.shares[name].tolist())
         self.assertTrue(np.isfinite(one.shares["low"]).all() and np.isnan(other.shares["low"]).all())
         (self.folder / "points.csv").unlink()  # the folder has its own
-        done = in_a_copy(self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "page.html")
+        done = self.chain.jointcreep("report", out, "-o", self.folder / "page.html")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("30 to 41", (self.folder / "page.html").read_text())
 
