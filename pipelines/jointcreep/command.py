@@ -203,7 +203,7 @@ def study(source, options, beside):
                                   quiet, lambda rows: answers.enough(of_study, rows), lock)
             behind = len(ended_rows(of_study, out)) - len(rows) if why not in ("", study_file.BY_STOP_RULE) else 0
             if behind > 0:
-                why += f"; {behind} more, behind a run that has not ended: --finish counts them"
+                why += f"; {behind} more, behind run {len(rows)}, which has not ended: --finish counts them"
         except KeyboardInterrupt as error:
             for number in runs.STOPS:
                 signal.signal(number, signal.SIG_IGN)  # what follows takes a moment only, and then all ends

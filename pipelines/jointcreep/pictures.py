@@ -22,6 +22,7 @@ BAND_POINTS = 60
 LABEL = 22  # characters in a line of a label; more are longer than a panel of convergence() is high
 FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
 CLASSES = 5  # of a parameter, for the share of failed runs
+LOGARITHMIC = 8  # ratio of the largest to the smallest value of a parameter from which its axis is logarithmic
 
 
 def distribution(quantity, study, values, beyond=0):
@@ -115,6 +116,10 @@ def parameters(quantity, study, values, run, given, of_shares):
             share_in_classes(axes, of_runs, values, study.design.are_independent())
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
+        if min(of_runs, default=0) > 0 and max(of_runs) > LOGARITHMIC * min(of_runs):
+            axes.set_xscale("log", subs=())
+            axes.xaxis.set_major_locator(figure.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter(figure.matplotlib.ticker.StrMethodFormatter("{x:g}"))
         axes.set_xlabel(study.parameters[column].name + "\n(above: number of runs)" * (quantity.what == "failed"))
         axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):
@@ -130,7 +135,9 @@ def share_in_classes(axes, of_runs, failed, are_independent):
     of_classes = [failed[place == one] for one in range(len(edges) - 1)]
     shares = [100 * each.mean() if len(each) else 0.0 for each in of_classes]
     axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
-    for middle, each in zip((edges[1:] + edges[:-1]) / 2, of_classes):
+    is_logarithmic = edges[0] > 0 and edges[-1] > LOGARITHMIC * edges[0]
+    middles = np.sqrt(edges[1:] * edges[:-1]) if is_logarithmic else (edges[1:] + edges[:-1]) / 2
+    for middle, each in zip(middles, of_classes):
         axes.text(middle, 1.0, f"{len(each)}", transform=axes.get_xaxis_transform(), ha="center", va="bottom", fontsize=5, color="0.35")
         if not are_independent or not len(each):
             continue

@@ -359,6 +359,8 @@ def what_varies(study, scene):
     parts = ["<h2>What varies</h2>"] + ["<p>The network.</p>"] * study.varies_network
     if study.parameters:
         parts.append(table(["parameter", "key of the scene", "in the scene", "in the runs"], materials.varied(study, scene)))
+        factors = ", ".join(one.name for one in study.parameters if one.multiplies)
+        parts += [f"<p>Pictures have the factor by which it multiplies the values of the scene: {escaped(factors)}.</p>"] * bool(factors)
     return parts
 
 
@@ -378,8 +380,10 @@ def of_study(out, programs, folder):
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     is_early = len(rows) < study.design.runs and not study.design.directions
+    ended = re.search(r"^runs .*, ended (.*)$", (out / "summary.txt").read_text("utf-8"), re.MULTILINE)
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", f"{len(rows)} of {study.design.runs}" if is_early else len(rows)),
+        *((("ended", ended[1]),) if ended else ()),
         ("runs with a result", len(rows) - len(failed)),
         *((f"runs without equilibrium: {what}", sum(row["no equilibrium"] == what for row in rows)) for what in (MOVING, UNDECIDED)),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
