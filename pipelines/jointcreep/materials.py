@@ -86,15 +86,15 @@ def marked(study, scene, formulas=None):
 
 
 def formulas_in_words(value, formula, by_name):
-    """A value of a scene in which numbers whose formula leads to a name that varies are words that say so. by_name: names of [variables]
-    that depend on each of these."""
+    """A value of a scene in which numbers whose formula leads to a name that varies are words: "12 = 2 * a, varies by a". by_name: names of
+    [variables] that depend on each of these."""
     if isinstance(formula, dict):
         return {key: formulas_in_words(one, formula.get(key), by_name) for key, one in value.items()}
     if isinstance(formula, list) and isinstance(value, list) and len(value) == len(formula):
         return [formulas_in_words(one, inner, by_name) for one, inner in zip(value, formula)]
     used = [name for name, names in by_name.items() if scene_keys.names_in(formula) & names]
     is_number = isinstance(value, (int, float)) and isinstance(formula, str)
-    return f'{formula}, varies by {", ".join(used)}' if used and is_number else value
+    return f'{number(value)} = {formula}, varies by {", ".join(used)}' if used and is_number else value
 
 
 def flat(table):

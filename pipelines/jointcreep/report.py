@@ -426,7 +426,7 @@ def of_study(out, programs, folder):
     marked = materials.marked(study, scene, plan.formulas_in(out))
     parts += ["<h2>Settings</h2>", settings(marked), "<h2>Versions</h2>",
               table(["program", "version"], found["identity"]["the programs' versions"].items()),
-              *materials_of(marked, " Values with <i>varies by</i> change from run to run: these are the values in the runs, not that of the scene."),
+              *materials_of(marked, " Values with <i>varies by</i> change from run to run: these are the values in the runs, or that of the scene and its formula."),
               "<h2>Study file</h2>", *study_text((out / "study.toml").read_text("utf-8")),
               "<h2>Scene</h2>", "<p>As it is written, before the study changes values (section What varies).</p>" * bool(study.parameters),
               f"<pre>{escaped((out / ('formulas.toml' if plan.formulas_in(out) else 'scene.toml')).read_text('utf-8'))}</pre>"]
