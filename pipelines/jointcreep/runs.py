@@ -8,6 +8,7 @@ import contextlib
 import dataclasses
 import fcntl
 import itertools
+import math
 import multiprocessing.connection
 import os
 import pathlib
@@ -216,10 +217,11 @@ def present_runs(out, since):
 class Progress:
     """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. A run at present takes as long as
     the mean of the ended runs that took longer than it has so far, or twice its time so far if none did. Runs that are not begun yet take the
-    mean of all these. Where times of runs are not known, the time left is by the pace of the last half of what has ended."""
+    mean of all these. Where times of runs are not known, the time left is by the pace of the last half of what has ended. No time left ends
+    after the deadline [s, as time.monotonic()]."""
 
-    def __init__(self, total, what, quiet, at_once=1):
-        self.total, self.what, self.quiet, self.at_once = total, what, quiet, at_once
+    def __init__(self, total, what, quiet, at_once=1, deadline=math.inf):
+        self.total, self.what, self.quiet, self.at_once, self.deadline = total, what, quiet, at_once, deadline
         self.ended, self.told = [], 0  # time and number of runs, at each change
         self.seconds, self.present = [], Present()  # of each run that has ended; runs at present
         self.spoke = time.monotonic()
@@ -247,6 +249,7 @@ class Progress:
         if self.quiet:
             return
         left = self.seconds_left()
+        left = None if left is None else min(left, max(0, self.deadline - time.monotonic()))
         line = f"{done} of {self.total} {self.what}" + (f", {duration(left)} left" if left is not None and done < self.total else "")
         line += str(present) if done < self.total else ""
         with contextlib.suppress(OSError):  # of a stderr that nobody reads any more
@@ -371,7 +374,7 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
     total = study.design.runs
     deadline = time.monotonic() + 3600 * study.stop.hours
     in_groups = study.design.directions > 0
-    progress = Progress(total, "replicates" if in_groups else "runs", quiet, jobs)
+    progress = Progress(total, "replicates" if in_groups else "runs", quiet, jobs, deadline)
     durations, begin = Ended(out), time.time() - CLOCKS
     batch = plan.BATCH if study.stop.of else total
     for end in [*range(batch, total, batch), total]:

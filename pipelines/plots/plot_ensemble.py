@@ -73,7 +73,7 @@ def draw(file, component="x", point=(), since_first_reading=False):
                for low, high, shade in BANDS]
     entries.append(matplotlib.lines.Line2D([], [], label="median", **MEDIAN))
     entries.append(panels[0].errorbar([], [], yerr=[], label="mean with its 95 percent confidence interval", **MEAN))
-    title = f"{number} runs" + (f" ({failed} more failed)" if failed else "")
+    title = f"{number} runs" + (f" ({failed} more failed or undecided)" if failed else "")
     below = 0.42 / plot.get_figheight()  # for the legend
     plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
     plot.legend(handles=entries, title=title, title_fontsize=7, loc="lower center", ncol=4)
