@@ -228,6 +228,11 @@ class Progress:
 
     def seconds_left(self):
         """None as long as no run has ended."""
+        left = self.seconds_of_work()
+        return None if left is None else min(left, max(0, self.deadline - time.monotonic()))
+
+    def seconds_of_work(self):
+        """The same, without the deadline."""
         (_, first), (_, done) = self.ended[0], self.ended[-1]
         left = self.total - done
         if len(self.seconds) and left > 0:
@@ -249,7 +254,6 @@ class Progress:
         if self.quiet:
             return
         left = self.seconds_left()
-        left = None if left is None else min(left, max(0, self.deadline - time.monotonic()))
         line = f"{done} of {self.total} {self.what}" + (f", {duration(left)} left" if left is not None and done < self.total else "")
         line += str(present) if done < self.total else ""
         with contextlib.suppress(OSError):  # of a stderr that nobody reads any more

@@ -707,6 +707,8 @@ class Failures(Studies):
             self.assertAlmostEqual(progress.seconds_left(), 600)
             progress.tell(99, [*ended, 900.0], runs.Present([600.0]))
             self.assertAlmostEqual(progress.seconds_left(), 300)
+            progress.deadline = time.monotonic() + 20
+            self.assertAlmostEqual(progress.seconds_left(), 20)
             progress = runs.Progress(100, "replicates", True)  # by the pace of the last half
             progress.tell(0)
             for done in range(1, 41):
