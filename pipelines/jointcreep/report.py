@@ -278,13 +278,15 @@ def relative_displacements(source, folder, wanted):
         names = [history.point[at] for at in of_no_line(file, history.point)]
     pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2)) if names else []
     place, rows = dict(zip(history.point, history.position)), []
+    first_row, has_readings = dict(zip(history.point, history.first_reading_row)), bool((history.first_reading_row > 0).any())
     for one, other in pairs:
         relative = history.relative(one, other)
         there = np.flatnonzero(np.isfinite(relative[:, 0]))
         if len(there):
-            last = there[-1]
+            last, first, closure = there[-1], max(first_row[one], first_row[other]), history.closure(one, other)
+            read = (1e3 * float(closure[last] - closure[first]) if first <= last else "",) if has_readings else ()
             rows.append((one, other, float(np.linalg.norm(place[one] - place[other])), *(1e3 * float(value) for value in (
-                history.closure(one, other)[last], *relative[last])), "" if last == len(history.time) - 1 else
+                closure[last], *relative[last])), *read, "" if last == len(history.time) - 1 else
                 f"until day {history.time[last]:.12g}: one of them is excavated"))
     if not rows:
         return []
@@ -296,8 +298,10 @@ def relative_displacements(source, folder, wanted):
         if len(rows) < count else "" if wanted else " --pairs of jointcreep report chooses pairs."
     return ["<h3>Relative displacements</h3>",
             "<p>Closure: by how much the distance of two points has become smaller, as a tape measures it; negative where they move apart. "
-            f"Relative x, y: displacement of the first point less that of the second.{escaped(which)}</p>",
-            table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)", ""], rows),
+            f"Relative x, y: displacement of the first point less that of the second. All since the in-situ equilibrium"
+            f"{', and the closure also since both points have been read' * has_readings}.{escaped(which)}</p>",
+            table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)",
+                   *["closure since the first readings (mm)"] * has_readings, ""], rows),
             drawn("histories", source, folder, "Closure of pairs of points.", pair=[row[:2] for row in by_size[:DRAWN_PAIRS]])]
 
 

@@ -5,7 +5,8 @@ All points that are not on monitoring lines are drawn; if all are on lines,
 these (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
 each point's own first reading, where its curve begins.
 
-With --pair the curves are of pairs of points: the closure, or a component of the displacement of the first point relative to the second.
+With --pair the curves are of pairs of points: the closure, or a component of the displacement of the first point relative to the second;
+with --readings since both points have had their first reading.
 With --without both runs are drawn, so that the difference is the share of creep, also of a closure.
 """
 
@@ -52,15 +53,17 @@ class Histories:
 
 
 class OfPairs:
-    """The same of pairs of points: their closure, or the displacement of the first relative to the second, where both are there."""
+    """The same of pairs of points: their closure, or the displacement of the first relative to the second, where both are there and, with
+    `readings`, have been read."""
 
-    def __init__(self, file, component, pairs):
+    def __init__(self, file, component, pairs, readings):
         self.time = figure.array(file, "/history/time")
         self.event = figure.texts(file, "/history/event")
         names = figure.texts(file, "/history/point")
         place = figure.array(file, "/history/point_position")
         moves = figure.array(file, "/history/displacement")
         present = figure.array(file, "/history/present") == 1
+        first_reading = figure.array(file, "/history/first_reading_row")
         self.names, values, shown = [], [], []
         for pair in pairs:
             one, other = (figure.name_index(names, name, "point") for name in pair)
@@ -68,9 +71,11 @@ class OfPairs:
                 raise figure.NotWanted(f"--pair: '{pair[0]}' is there twice; expected two points")
             relative = moves[:, one] - moves[:, other]
             apart = place[one] - place[other]
-            values.append(np.linalg.norm(apart) - np.linalg.norm(apart + relative, axis=1) if component == "closure" else
-                          relative[:, "xy".index(component)])
-            shown.append(present[:, one] & present[:, other])
+            of_pair = np.linalg.norm(apart) - np.linalg.norm(apart + relative, axis=1) if component == "closure" else \
+                relative[:, "xy".index(component)]
+            first = max(first_reading[one], first_reading[other]) if readings else 0
+            values.append(of_pair - of_pair[first] if readings else of_pair)
+            shown.append(present[:, one] & present[:, other] & (np.arange(len(self.time)) >= first))
             self.names.append(f"{pair[0]} - {pair[1]}")
         self.values, self.shown = 1e3 * np.transpose(values), np.transpose(shown)  # [mm]
 
@@ -127,17 +132,17 @@ def histories_without(path, file, histories):
 
 def draw(file, component=None, point=(), readings=False, since_reset=False, without=None, closed_form=None, pair=()):
     """Figure of histories: component "x", "y" (the default) or "toward"; of all points, or those that are named; readings: since each
-    point's first; without: path of a result of the same scene without creep. pair: pairs of points in their place, component "closure"
-    (the default), "x" or "y"."""
+    point's first, or that of both points of a pair; without: path of a result of the same scene without creep. pair: pairs of points in
+    their place, component "closure" (the default), "x" or "y"."""
     component = component or ("closure" if pair else "y")
     if component not in (OF_PAIRS if pair else LABELS):
         raise figure.NotWanted(f"--component {component} is not of {'pairs' if pair else 'single points'}; expected "
                                f"{', '.join(OF_PAIRS if pair else LABELS)}")
-    if pair and (point or readings or since_reset or closed_form):
-        raise figure.NotWanted("--pair goes with --component and --without only")
+    if pair and (point or since_reset or closed_form):
+        raise figure.NotWanted("--pair goes with --component, --readings and --without only")
 
     def histories_of(result):
-        return OfPairs(result, component, pair) if pair else Histories(result, component, point, readings, since_reset)
+        return OfPairs(result, component, pair, readings) if pair else Histories(result, component, point, readings, since_reset)
 
     histories = histories_of(file)
     names = histories.names
@@ -175,7 +180,7 @@ def draw(file, component=None, point=(), readings=False, since_reset=False, with
     figure.mark_stages(axes, histories.time[stages], [histories.event[row] for row in stages])
     since = "since the in-situ equilibrium"
     if readings or since_reset:
-        since = "since each point's first reading" if readings else "since the last reset"
+        since = "since the last reset" if since_reset else "since the first reading of both" if pair else "since each point's first reading"
     if readings and since_reset:
         raise figure.NotWanted("expected either --readings or --since-reset, not both")
     figure.label_time(file, axes, figure.ending_of(file))
@@ -197,7 +202,7 @@ if __name__ == "__main__":
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),
         (["--pair"], {"action": "append", "nargs": 2, "default": [], "metavar": ("POINT", "OTHER"),
                       "help": "two points in place of one: closure, or displacement of POINT relative to OTHER; may be given several times"}),
-        (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading"}),
+        (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading, of pairs since both have been read"}),
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         (["--without"], {"metavar": "RESULT.h5", "help": "the same scene without creep, drawn thin and dashed"}),
         (["--closed-form"], {"choices": ["column"], "help": "draw the exact answer beside"}),

@@ -282,6 +282,30 @@ class Plots(ChainTest):
             self.assertIn("without creep", [text.get_text() for text in picture.axes[0].get_legend().get_texts()])
             figure.plt.close(picture)
 
+    def test_pairs_since_their_first_readings(self):
+        """The curve of a pair, and the closure in a report, count from the later of both first readings."""
+        import figure
+        from jointcreep import plots, read
+
+        result = self.chain.result(self.chain.small())
+        history = read(result).history()
+        first = max(int(history.first_reading_row[history.point.index(name)]) for name in ("crest", "floor"))
+        self.assertGreater(first, 0)
+        closure, across = history.closure("crest", "floor"), history.relative("crest", "floor")[:, 0]
+        for component, values in ("closure", closure), ("x", across):
+            picture = plots.draw("histories", result, pair=[("crest", "floor")], readings=True, component=component)
+            curve = next(line for line in picture.axes[0].lines if len(line.get_ydata()) > 2)
+            numpy.testing.assert_allclose(curve.get_ydata(), 1e3 * (values - values[first])[first:], atol=1e-9)
+            self.assertEqual(curve.get_xdata()[0], history.time[first])
+            self.assertIn("since the first reading of both", picture.axes[0].get_ylabel())
+            figure.plt.close(picture)
+        self.assertGreater(abs(closure[first]), 1e-6)
+        page = result.with_name("page.html")
+        self.assertEqual(self.chain.jointcreep("report", result, "--pairs", "crest,floor", "-o", page).returncode, 0)
+        numbers = [1e3 * value for value in (closure[-1], *history.relative("crest", "floor")[-1], closure[-1] - closure[first])]
+        self.assertIn("".join(f'<td class="number">{value:.4g}</td>' for value in numbers), page.read_text())
+        self.assertIn("<th>closure since the first readings (mm)</th>", page.read_text())
+
     def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))
         picture = result.with_name("picture.png")
