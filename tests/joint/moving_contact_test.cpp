@@ -90,6 +90,27 @@ RC_GTEST_PROP(moving_contact, accounts_for_the_work_of_shear, ())
     RC_ASSERT(std::abs(stored - sheared_in + slip + opening - work) <= 1e-12 * size);
 }
 
+// A law that remembers divides the force by the length, and multiplies again. Where it does not slip the force is the trial to the bit: by
+// that a step knows that it sticks, and that dashpots hold it.
+TEST(moving_contact, sticks_to_the_bit)
+{
+    const Law wears = WearingDilation{
+        {.k_n = 4e9, .k_s = 1e9, .cohesion = 2e5, .tan_phi = 0.6, .tensile_strength = 0, .tan_psi = 0.2},
+        2e-4};
+    ASSERT_TRUE(remembers(wears));
+    int rounded = 0;
+    for (int i = 1; i <= 200; ++i) {
+        State state;
+        const double length = 0.01 * i;
+        const ShearMove move = shear_move(wears, 1e4 / 3, length, length, 1e-6 / 7 * i);
+        rounded += move.trial / length * length != move.trial;
+        const double force = shear_force(wears, state, move, 1e7 * length);
+        EXPECT_EQ(force, move.trial);
+        EXPECT_GT(shear_held(wears, move, force, 1e7 * length, 0.1), 0);
+    }
+    EXPECT_GT(rounded, 10);
+}
+
 // Dashpots resist the slide, never beyond the strength, and not where it slips.
 RC_GTEST_PROP(moving_contact, dashpots_stay_within_the_strength, ())
 {

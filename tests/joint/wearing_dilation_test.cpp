@@ -35,6 +35,17 @@ double opened(const WearingDilation& law, double slip, double tau)
 
 } // namespace
 
+// Slip that wears hardly anything: on both sides of the wear from which the formula is a series, opening is that of the other.
+TEST(wearing_dilation, opens_by_a_series_where_little_wears)
+{
+    const DilationThatWears<double> dilation{0.2, 2e-4, 0};
+    for (const double worn : {1e-12, 2e-9, 9.9e-9, 1.1e-8, 1e-7}) {
+        const double slip = 1e-6, tau = worn / (dilation.wear * slip);
+        const double wanted = 0.2 * slip * (1 - worn / 2 + worn * worn / 6);
+        EXPECT_NEAR(dilation.opening_by(slip, tau) / wanted, 1, 1e-15);
+    }
+}
+
 // Slip by 3 mm, back by 5, and on by 4, under a pressure of 1 MPa: the joint opens by what the formula says, so
 // that the pressure stays as it is.
 TEST(wearing_dilation, opens_less_and_less_under_a_constant_pressure)
