@@ -34,7 +34,7 @@ UP_TO_THERE = "the run up to there is "  # where demsolve has left a file, which
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 # A program that dies with the process of this number. Three programs start in a third of the time of a function that is called in a copy of
 # this process (preexec_fn). The parent may have died before setpriv asked the kernel: the shell looks.
-DYING_WITH_PARENT = ["setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] && exec "$@"']
+DYING_WITH_PARENT = ["setpriv", "--pdeathsig", "KILL", "sh", "-c", '[ "$PPID" = "$0" ] || exit 127; exec "$@"']
 CANNOT_START = (126, 127)  # exit codes of setpriv and the shell
 LIBC = ctypes.CDLL(None)
 BEGUN = ".begun"  # ending of a file beside the folder of a run, which is as old as the run, also if the run is made twice
@@ -83,9 +83,10 @@ def called(program, arguments, folder):
             said.seek(0)
             lines = [line for line in said.read().decode("utf-8", "replace").splitlines() if not PROGRESS.match(line)]
     except OSError as error:
-        raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
-    if done.returncode in CANNOT_START:
-        raise Interrupted(f"{program} cannot be started: {' '.join(lines)}")
+        raise Interrupted(f"{error.filename or program} cannot be started: {error.strerror}") from None
+    if done.returncode in CANNOT_START or done.returncode and lines[:1] and lines[0].startswith("setpriv: "):
+        said = " ".join(re.sub(r"^\d+: (\d+: )?(exec: )?", "", line) for line in lines)
+        raise Interrupted(f"{program} cannot be started, or ended with exit code {done.returncode}: {said}")
     warnings = [line.replace(": warning: ", ": ", 1) for line in lines if ": warning: " in line]
     lines = [line for line in lines if ": warning: " not in line and not line.removeprefix(f"{program.name}: ").startswith(UP_TO_THERE)]
     lines = lines[:1] + [line.removeprefix(f"{program.name}: ") for line in lines[1:]]

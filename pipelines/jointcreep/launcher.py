@@ -16,6 +16,8 @@ try:
     sys.path[:0] = [str(PACKAGE), str(PACKAGE / "plots")]
 
     from jointcreep import command
+except KeyboardInterrupt:
+    os._exit(130)
 except (ImportError, MemoryError, OSError, SystemError) as error:  # Python loses some errors for lack of memory
     if isinstance(error, ImportError) and "failed to map segment" not in str(error) or \
             isinstance(error, OSError) and error.errno != errno.ENOMEM:

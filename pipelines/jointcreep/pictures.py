@@ -118,8 +118,10 @@ def parameters(quantity, study, values, run, given, of_shares):
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         if min(of_runs, default=0) > 0 and max(of_runs) > LOGARITHMIC * min(of_runs):
             axes.set_xscale("log", subs=())
-            axes.xaxis.set_major_locator(figure.matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+            is_short = max(of_runs) < 30 * min(of_runs)
+            axes.xaxis.set_major_locator(figure.matplotlib.ticker.LogLocator(subs=(1, 2, 5) if is_short else (1,), numticks=8 if is_short else 5))
             axes.xaxis.set_major_formatter(figure.matplotlib.ticker.StrMethodFormatter("{x:g}"))
+            axes.xaxis.set_minor_formatter(figure.matplotlib.ticker.NullFormatter())
         axes.set_xlabel(study.parameters[column].name + "\n(above: number of runs)" * (quantity.what == "failed"))
         axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):

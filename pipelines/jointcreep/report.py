@@ -278,13 +278,14 @@ def relative_displacements(source, folder, wanted):
         names = [history.point[at] for at in of_no_line(file, history.point)]
     pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2)) if names else []
     place, rows = dict(zip(history.point, history.position)), []
-    first_row, has_readings = dict(zip(history.point, history.first_reading_row)), bool((history.first_reading_row > 0).any())
+    first_row = dict(zip(history.point, history.first_reading_row))
+    has_readings = any(first_row[name] > 0 for pair in pairs for name in pair)
     for one, other in pairs:
         relative = history.relative(one, other)
         there = np.flatnonzero(np.isfinite(relative[:, 0]))
         if len(there):
             last, first, closure = there[-1], max(first_row[one], first_row[other]), history.closure(one, other)
-            read = (1e3 * float(closure[last] - closure[first]) if first <= last else "",) if has_readings else ()
+            read = (1e3 * float(closure[last] - closure[first]) if first < last else "",) if has_readings else ()
             rows.append((one, other, float(np.linalg.norm(place[one] - place[other])), *(1e3 * float(value) for value in (
                 closure[last], *relative[last])), *read, "" if last == len(history.time) - 1 else
                 f"until day {history.time[last]:.12g}: one of them is excavated"))

@@ -819,7 +819,7 @@ class Failures(Studies):
         study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
         done = self.study(study, out, programs=self.programs('[ "$1" = --version ] || rm -f "{folder}/demsolve"', "strength-averaging"))
         self.assertEqual(done.returncode, 4, done.stderr)
-        self.assertRegex(done.stderr, "/demsolve cannot be started: .*not found")
+        self.assertRegex(done.stderr, "/demsolve cannot be started, or ended with exit code 127: .*not found")
         self.assertEqual(rows_of(self.made(study, out))[0]["exit code"], "0")
 
     def test_all_failed(self):
@@ -1110,12 +1110,12 @@ values = [1, 2, 6]
 
         # Runs behind one that has not ended do not count; summary and report say which one that is.
         slow = self.programs('case "$PWD" in */late/work/000001*) exec sleep 60 ;; esac', "jointgen")
-        done = self.study(self.written(text + "[stop]\nhours = 1.5e-3\n"), self.folder / "late", "-j2", programs=slow)
+        done = self.study(self.written(text + "[stop]\nhours = 4e-3\n"), self.folder / "late", "-j2", programs=slow)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"\nruns +1 of 30, ended after the 0.0015 hours of the budget; \d+ more, behind run 1, which has not ended")
+        self.assertRegex(done.stdout, r"\nruns +1 of 30, ended after the 0.004 hours of the budget; \d+ more, behind run 1, which has not ended")
         done = self.chain.jointcreep("report", self.folder / "late", "-o", self.folder / "page.html")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("<td>ended</td><td>after the 0.0015 hours of the budget; ", (self.folder / "page.html").read_text())
+        self.assertIn("<td>ended</td><td>after the 0.004 hours of the budget; ", (self.folder / "page.html").read_text())
 
     def test_axes_of_parameters(self):
         """Logarithmic for a parameter that varies by more than a factor of eight."""
@@ -1126,6 +1126,16 @@ values = [1, 2, 6]
         for quantity in study.quantities[0], study.quantities[-1]:
             picture = pictures.parameters(quantity, study, np.array([1.0, 0.0, 1.0]), [0, 1, 2], given, [])
             self.assertEqual([axes.get_xscale() for axes in picture.axes], ["log", "linear"], quantity.name)
+            plots.figure.plt.close(picture)
+        for largest in 9e3, 1e5, 1e7, 1e9, 1e12:  # some labels, and none over another
+            given = [{"given": values} for values in ([1000, 10], [2000, 20], [largest, 80])]
+            picture = pictures.parameters(study.quantities[0], study, np.array([1.0, 0.0, 1.0]), [0, 1, 2], given, [])
+            picture.canvas.draw()
+            axes, renderer = picture.axes[0], picture.canvas.get_renderer()
+            low, high = axes.get_xlim()
+            boxes = [label.get_window_extent(renderer) for place, label in zip(axes.get_xticks(), axes.get_xticklabels()) if low <= place <= high]
+            self.assertIn(len(boxes), range(2, 8), largest)
+            self.assertTrue(all(one.x1 < other.x0 for one, other in zip(boxes, boxes[1:])), largest)
             plots.figure.plt.close(picture)
 
 

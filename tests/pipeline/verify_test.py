@@ -9,6 +9,7 @@ import random
 import re
 import shutil
 import sys
+import types
 
 import h5py
 import numpy as np
@@ -332,6 +333,21 @@ class Verify(ChainTest):
         for name in self.RESULTS:
             shown |= set(self.of_result(name)[1])
         self.assertEqual(shown - found, set(), "checks that no wrong value is tried on")
+
+    def test_a_block_that_has_rotated_before(self):
+        """What a first rotation a of a block makes of a second one b is left out: the strain -a b, of the whole block; nothing larger."""
+        section = types.SimpleNamespace(stress_of=lambda strain: 3.0 * strain, rigid_block=np.zeros(2, bool), zone_block=np.array([0, 0, 1]),
+                                        area=np.array([1.0, 2.0, 1.0]))
+        b = np.array([0.1, 0.1, 0])
+        rotation = np.moveaxis(np.array([[np.cos(b), -np.sin(b)], [np.sin(b), np.cos(b)]]), 2, 0)
+        verification = self.script.Verification.__new__(self.script.Verification)
+        verification.section = section
+        for a, is_left_out in (0.002, True), (-0.004, True), (0.1, False):
+            stress = -3.0 * a * b[:, None, None] * np.eye(2)
+            stress[2, 0, 1] = stress[2, 1, 0] = 7e-5  # of the other block, which has not rotated
+            left = verification.without_first_rotation(stress, rotation)
+            self.assertLess(abs(np.abs(left[:2]).max() - (0 if is_left_out else 0.95 * np.abs(stress[:2]).max())), 1e-15)
+            np.testing.assert_array_equal(left[2], stress[2])
 
     def test_displaced_zones_without_a_shape(self):
         """Displacements that are no numbers, or make zones flat, fail checks in any state at large displacements."""
