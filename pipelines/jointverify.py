@@ -1494,6 +1494,7 @@ class Verification:
             self.checks.leave_out("stored energy of stages, that it is the states' (increments, rock that yields, or joints of Barton and "
                                   "Bandis's law)")
             return
+        searches = self.file.index("/equilibria/searches", 1 << 31, "equilibrium")
         for s in stages:
             later = sum(1 for other in stages if other > s and st.time[other] == st.time[s])
             rows = np.flatnonzero(e["time"] == st.time[s])
@@ -1501,7 +1502,8 @@ class Verification:
                 continue
             # One of each stage, and that of the creep step before it. A stage can be divided after a search that failed.
             n_stages = sum(1 for other in stages if st.time[other] == st.time[s])
-            if len(rows) > n_stages and (len(rows) > n_stages + 1 or np.any(self.file.index("/equilibria/searches", 1 << 31, "equilibrium")[rows] > 1)):
+            is_divided = bool(np.any(searches[rows] > 1))
+            if len(rows) > (n_stages if is_divided else n_stages + 1):
                 self.checks.leave_out(f"stored energy of stages on day {st.time[s]:.6g}, which have several increments")
                 continue
             row = rows[-1 - later]

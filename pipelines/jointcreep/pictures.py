@@ -22,7 +22,7 @@ BAND_POINTS = 60
 LABEL = 22  # characters in a line of a label; more are longer than a panel of convergence() is high
 FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
 CLASSES = 5  # of a parameter, for the share of failed runs
-LOGARITHMIC = 8  # ratio of the largest to the smallest value of a parameter from which its axis is logarithmic
+LOGARITHMIC = 8  # the axis of a parameter is logarithmic if its largest value is more than so many times the smallest
 
 
 def distribution(quantity, study, values, beyond=0):
@@ -62,6 +62,15 @@ def panels_of(rows):
     return of
 
 
+def make_logarithmic(axes, numbers=(1, 2, 5), most=None, ticks=None):
+    """Makes the horizontal axis logarithmic, with plain numbers at these multiples of powers of ten, `most` in all or as many as there is
+    room for, and ticks at other multiples, or the usual ones."""
+    axes.set_xscale("log", subs=ticks)
+    axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=numbers, numticks=most))
+    axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
 def convergence(quantity, rows, stop, counted, order=""):
     """Statistics over the number of runs, each with its interval. order: words on the order of the runs."""
     of_panels = panels_of(rows)
@@ -81,10 +90,7 @@ def convergence(quantity, rows, stop, counted, order=""):
                 axes.axhline(end, color=figure.COLORS[1], linewidth=0.8, linestyle="--",
                              label="wanted" if end < value[-1] else None)
         if runs[-1] > 5 * runs[0]:
-            axes.set_xscale("log")
-            axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
-            axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
-            axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+            make_logarithmic(axes)
         else:
             axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
         label = f"mean of {quantity.title()}" if name == "mean" else f"{answers.with_unit(name, quantity)} (percent)"
@@ -112,16 +118,13 @@ def parameters(quantity, study, values, run, given, of_shares):
     panels = [axes for part, line in zip(of_lines, lines) for axes in part.subplots(1, len(line), squeeze=False)[0]]
     for axes, column in zip(panels, numeric):
         of_runs = np.array([given[one]["given"][column] for one in run], float)
+        if of_runs.min() > 0 and of_runs.max() > LOGARITHMIC * of_runs.min():
+            is_short = of_runs.max() < 30 * of_runs.min()
+            make_logarithmic(axes, (1, 2, 5) if is_short else (1,), 8 if is_short else 5, ticks=())
         if quantity.what == "failed":
             share_in_classes(axes, of_runs, values, study.design.are_independent())
         else:
             axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
-        if min(of_runs, default=0) > 0 and max(of_runs) > LOGARITHMIC * min(of_runs):
-            axes.set_xscale("log", subs=())
-            is_short = max(of_runs) < 30 * min(of_runs)
-            axes.xaxis.set_major_locator(figure.matplotlib.ticker.LogLocator(subs=(1, 2, 5) if is_short else (1,), numticks=8 if is_short else 5))
-            axes.xaxis.set_major_formatter(figure.matplotlib.ticker.StrMethodFormatter("{x:g}"))
-            axes.xaxis.set_minor_formatter(figure.matplotlib.ticker.NullFormatter())
         axes.set_xlabel(study.parameters[column].name + "\n(above: number of runs)" * (quantity.what == "failed"))
         axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):
@@ -137,8 +140,7 @@ def share_in_classes(axes, of_runs, failed, are_independent):
     of_classes = [failed[place == one] for one in range(len(edges) - 1)]
     shares = [100 * each.mean() if len(each) else 0.0 for each in of_classes]
     axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
-    is_logarithmic = edges[0] > 0 and edges[-1] > LOGARITHMIC * edges[0]
-    middles = np.sqrt(edges[1:] * edges[:-1]) if is_logarithmic else (edges[1:] + edges[:-1]) / 2
+    middles = np.sqrt(edges[1:] * edges[:-1]) if axes.get_xscale() == "log" else (edges[1:] + edges[:-1]) / 2
     for middle, each in zip(middles, of_classes):
         axes.text(middle, 1.0, f"{len(each)}", transform=axes.get_xaxis_transform(), ha="center", va="bottom", fontsize=5, color="0.35")
         if not are_independent or not len(each):

@@ -299,7 +299,7 @@ def relative_displacements(source, folder, wanted):
         if len(rows) < count else "" if wanted else " --pairs of jointcreep report chooses pairs."
     return ["<h3>Relative displacements</h3>",
             "<p>Closure: by how much the distance of two points has become smaller, as a tape measures it; negative where they move apart. "
-            f"Relative x, y: displacement of the first point less that of the second. All since the in-situ equilibrium"
+            "Relative x, y: displacement of the first point less that of the second. All since the in-situ equilibrium"
             f"{', and the closure also since both points have been read' * has_readings}.{escaped(which)}</p>",
             table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)",
                    *["closure since the first readings (mm)"] * has_readings, ""], rows),
@@ -385,7 +385,8 @@ def of_study(out, programs, folder):
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     is_early = len(rows) < study.design.runs and not study.design.directions
-    ended = re.search(r"^runs .*, ended (.*)$", (out / "summary.txt").read_text("utf-8"), re.MULTILINE)
+    summary = (out / "summary.txt").read_text("utf-8")
+    ended = re.search(r"^runs .*, ended (.*)$", summary, re.MULTILINE)
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", f"{len(rows)} of {study.design.runs}" if is_early else len(rows)),
         *((("ended", ended[1]),) if ended else ()),
@@ -420,7 +421,7 @@ def of_study(out, programs, folder):
             kind = name.removesuffix(".png").rpartition("-")[2]
             parts.append(picture(out / name, caption_of(kind, quantity, study)))
     parts += histories_of(out)
-    notes = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].splitlines()
+    notes = summary.partition("the design has none\n")[2].splitlines()
     warned = [line for line in notes if line.startswith("warning")]
     missing = [line for line in notes if line not in warned and (line.startswith(("run ", "and ")) or " runs: " in line)]
     for heading, lines in (("Warnings", warned), ("Runs without a value", missing)):
