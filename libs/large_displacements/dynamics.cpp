@@ -20,8 +20,9 @@ constexpr double safety = 0.9;   // of the largest stable step
 constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: what one step misses of an
                                  // impact's beginning is an error of energy
 constexpr double at_rest = 1e-4; // [m/s]
-constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
-constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
+constexpr double rounding_of_place = 1e-15; // of positions, over their distance from the section's middle [-]
+constexpr double most_rounding = 1e-3;      // of the mean force on a gridpoint
+constexpr double slow = 0.01; // below this speed everywhere, motion is stopped at its peaks [m/s]
 
 } // namespace
 
@@ -69,6 +70,7 @@ struct Dynamics::Leap {
 
 struct Dynamics::Balance {
     double largest = 0;  // unbalanced force [N/m]
+    double without = 0;  // the same without the forces of dashpots [N/m]
     double mean = 0;     // summed magnitudes of forces, mean of loaded gridpoints [N/m]
     double farthest = 0; // place of a gridpoint from the section's middle [m]
     double change = 0;   // of the contacts' force on a gridpoint since the last check, the largest [N/m]
@@ -304,6 +306,21 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
     }
 }
 
+// Forces of dashpots on gridpoints, of zones and contacts; those of ties are at their leaders [N/m].
+std::vector<Vector2d> Dynamics::forces_of_dashpots() const
+{
+    std::vector<Vector2d> force(now_.place.size(), Vector2d::Zero());
+    contacts_.add_forces_of_dashpots(force);
+    for (std::size_t z = 0; z < zones_.zone.size(); ++z)
+        if (deforms(z))
+            rock::add_forces_of_dashpots(assembly_.zones, zones_, static_cast<Index>(z), now_.place, force);
+    for (const auto& [follower, leader] : assembly_.tied) {
+        force[leader] += force[follower];
+        force[follower].setZero();
+    }
+    return force;
+}
+
 double Dynamics::stored() const
 {
     return in_zones_.stored + contacts_.energy().stored;
@@ -414,14 +431,28 @@ void Dynamics::step()
         find_time_step();
 }
 
+// Kinetic energy that rounding errors of positions may give or take in a step, by their impulse from the stiffest springs
+// and dashpots, on the mass that the step was chosen for [J/m].
+double Dynamics::energy_of_rounding() const
+{
+    const double beta = settings_.stiffness_damping, half = now_.dt / (2 * safety);
+    const double impulse = rounding_of_place * high_.norm() * now_.stiffest * (now_.dt + beta); // [N s/m]
+    const double one_over_mass = now_.stiffest > 0 ? 1 / (now_.stiffest * half * (half + beta)) : 0.0;
+    return impulse * (now_.fastest + impulse * one_over_mass / 2);
+}
+
 // Rock near rest oscillates about it. If it is stopped where its kinetic energy is largest, it stops near rest. Rock
-// that moves on has no such peak until it is slow.
+// that moves on has no such peak until it is slow. Peaks of rounding errors do not count: rock that begins to move would
+// be stopped at each of them, and stay where it is not in equilibrium.
 void Dynamics::stop_at_peak(double kinetic)
 {
-    if (now_.fastest >= slow || kinetic >= now_.last_kinetic) {
+    if (now_.fastest >= slow) {
         now_.last_kinetic = kinetic;
         return;
     }
+    now_.last_kinetic = std::max(now_.last_kinetic, kinetic);
+    if (kinetic + energy_of_rounding() >= now_.last_kinetic)
+        return;
     now_.energy.damped += energy().kinetic;
     for (Body& body : bodies_) {
         body.velocity.setZero();
@@ -467,7 +498,7 @@ Energy Dynamics::energy() const
         energy.kinetic -= keep * turn.b * turn.momentum * turn.momentum / 2;
     for (const Body& body : bodies_)
         if (!body.is_held()) {
-            const auto [force, moment] = load_on(body);
+            const auto [force, moment] = load_on(body, now_.force);
             energy.kinetic +=
                 (keep * body.mass * body.velocity.squaredNorm() + gain * body.velocity.dot(force) +
                  keep * body.inertia * body.spin * body.spin + gain * body.spin * moment) /
@@ -491,15 +522,33 @@ mechanics::no_equilibrium Dynamics::moves_on(const std::string& why) const
     return error;
 }
 
+// The largest of these forces on gridpoints, and of theirs on bodies, where rock is free [N/m].
+double Dynamics::largest_of(const std::vector<Vector2d>& force) const
+{
+    double largest = 0;
+    for (std::size_t g = 0; g < force.size(); ++g)
+        if (body_of_[g] < 0)
+            largest = std::max(largest, force[g].cwiseProduct(assembly_.is_free[g]).norm());
+    for (const Body& body : bodies_)
+        if (!body.is_held()) {
+            const auto [sum, moment] = load_on(body, force);
+            largest = std::max({largest, sum.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
+        }
+    return largest;
+}
+
 // Unbalanced forces, and forces on gridpoints, with these forces of contacts [N/m].
 Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) const
 {
     Balance found;
+    std::vector<Vector2d> without = forces_of_dashpots();
+    for (std::size_t g = 0; g < without.size(); ++g)
+        without[g] = now_.force[g] - without[g];
+    found.largest = largest_of(now_.force);
+    found.without = largest_of(without);
     double sum = 0;
     Index n = 0;
     for (std::size_t g = 0; g < now_.place.size(); ++g) {
-        if (body_of_[g] < 0)
-            found.largest = std::max(found.largest, now_.force[g].cwiseProduct(assembly_.is_free[g]).norm());
         found.farthest = std::max(found.farthest, now_.place[g].norm());
         double all = assembly_.load[g].norm() + assembly_.applied[g].norm() + contact_force[g].norm();
         for (const Index corner : assembly_.zones.corners[g])
@@ -512,12 +561,6 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
             found.change = std::max(found.change, (contact_force[g] - now_.last_contact_force[g]).norm());
     }
     found.mean = n > 0 ? sum / n : 0.0;
-    for (const Body& body : bodies_)
-        if (!body.is_held()) {
-            const auto [force, moment] = load_on(body);
-            found.largest = std::max(
-                {found.largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
-        }
     return found;
 }
 
@@ -548,15 +591,17 @@ bool Dynamics::is_at_rest()
     const Balance found = balance(contact_force);
     // Forces near 0 are rounding errors of stiffness times position. Forces no larger than these mean no load. Dashpots
     // multiply the errors by damping time over step time: too much for very small zones, whose forces are then not
-    // usable.
-    const double of_springs = 1e-15 * now_.stiffest * found.farthest;
+    // usable. So forces have to be in balance with those of dashpots, as far as the errors allow, and without them.
+    const double of_springs = rounding_of_place * now_.stiffest * found.farthest;
     const double rounding = of_springs * (1 + settings_.stiffness_damping / now_.dt);
     now_.largest_mean = std::max(now_.largest_mean, found.mean);
     check_rounding(of_springs, rounding);
-    const double mean = found.mean > 0 ? std::max(found.mean, rounding / settings_.tolerance) : 1.0;
-    now_.ratio = found.largest / mean;
+    const auto over_mean = [&](double force, double its_rounding) {
+        return force / (found.mean > 0 ? std::max(found.mean, its_rounding / settings_.tolerance) : 1.0);
+    };
+    now_.ratio = std::max(over_mean(found.largest, rounding), over_mean(found.without, of_springs));
     const bool has_last = !now_.last_contact_force.empty();
-    now_.force_change = found.change / mean;
+    now_.force_change = over_mean(found.change, rounding);
     now_.last_contact_force = std::move(contact_force);
     const bool is_balanced = now_.fastest <= at_rest && now_.ratio <= settings_.tolerance && has_last &&
                              now_.force_change <= settings_.tolerance && release_factor() == 0;

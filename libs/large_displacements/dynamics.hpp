@@ -94,8 +94,9 @@ public:
     // The error that rock keeps moving, with its present motion.
     mechanics::no_equilibrium moves_on(const std::string& why) const;
 
-    // Whether everything is at rest: forces are in balance to the tolerance, now and at the last check. Call it every
-    // `check_every` steps. Throws equilibrium_error if forces are mostly rounding errors.
+    // Whether everything is at rest: forces are in balance to the tolerance, with those of dashpots and without, now and
+    // at the last check. Call it every `check_every` steps. Throws equilibrium_error if forces are mostly rounding
+    // errors.
     static constexpr Index check_every = 50;
     bool is_at_rest();
 
@@ -162,10 +163,13 @@ private:
     MovedRock move_rock();
     Work work_of_loads(double held) const;
     void find_forces(const std::vector<Vector2d>& move);
+    double energy_of_rounding() const;
     void stop_at_peak(double kinetic);
     double release_factor() const;
     double half_step_energy() const;
     double stored() const;
+    std::vector<Vector2d> forces_of_dashpots() const;
+    double largest_of(const std::vector<Vector2d>& force) const;
     Balance balance(const std::vector<Vector2d>& contact_force) const;
     void check_rounding(double of_springs, double rounding) const;
 
@@ -178,7 +182,7 @@ private:
     void find_bodies();
     void find_inertia(const std::vector<double>& masses);
     double move(Body& body, double keep, double gain);
-    std::pair<Vector2d, double> load_on(const Body& body) const;
+    std::pair<Vector2d, double> load_on(const Body& body, const std::vector<Vector2d>& on_gridpoints) const;
     void put_back_forces();
 
     // Faces and their laws: faces_of_rock.cpp.

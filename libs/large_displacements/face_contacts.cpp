@@ -295,4 +295,20 @@ void FaceContacts::add_forces(std::vector<Vector2d>& force, int threads) const
     });
 }
 
+void FaceContacts::add_forces_of_dashpots(std::vector<Vector2d>& force) const
+{
+    for (const Index p : active_) {
+        const FacePair& pair = pairs_[p];
+        if (!pair.is_closed)
+            continue;
+        const auto &a = faces_.gridpoint[pair.a], &b = faces_.gridpoint[pair.b];
+        for (int end = 0; end < 2; ++end) {
+            force[a[0]] += (1 - pair.on_a[end]) * pair.held[end];
+            force[a[1]] += pair.on_a[end] * pair.held[end];
+            force[b[0]] -= (1 - pair.on_b[end]) * pair.held[end];
+            force[b[1]] -= pair.on_b[end] * pair.held[end];
+        }
+    }
+}
+
 } // namespace jointcreep::large_displacements

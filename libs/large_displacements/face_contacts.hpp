@@ -149,6 +149,8 @@ public:
 
     // Adds the forces of the last update to those on gridpoints [N/m].
     void add_forces(std::vector<Vector2d>& force, int threads) const;
+    // Adds the part of them that dashpots have.
+    void add_forces_of_dashpots(std::vector<Vector2d>& force) const;
 
     // Energies of all pairs, at the last update.
     const PairEnergy& energy() const { return energy_; }

@@ -80,15 +80,16 @@ void Dynamics::find_inertia(const std::vector<double>& masses)
             body.inertia += std::max(0.0, lumped[body.gridpoint[k]]) * body.arm[k].squaredNorm();
 }
 
-// Force [N/m] and moment about the centre [N] on a body.
-std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
+// Force [N/m] and moment about the centre [N] on a body, of these forces on gridpoints [N/m].
+std::pair<Vector2d, double> Dynamics::load_on(const Body& body,
+                                              const std::vector<Vector2d>& on_gridpoints) const
 {
     Vector2d force(0, 0);
     double moment = 0;
     for (const Index g : body.gridpoint) {
         const Vector2d arm = now_.place[g] - body.centre;
-        force += now_.force[g];
-        moment += arm.x() * now_.force[g].y() - arm.y() * now_.force[g].x();
+        force += on_gridpoints[g];
+        moment += arm.x() * on_gridpoints[g].y() - arm.y() * on_gridpoints[g].x();
     }
     if (!body.turns())
         moment = 0;
@@ -100,7 +101,7 @@ double Dynamics::move(Body& body, double keep, double gain)
 {
     if (body.is_held())
         return 0;
-    const auto [force, moment] = load_on(body);
+    const auto [force, moment] = load_on(body, now_.force);
     const Vector2d last = body.velocity;
     const double last_spin = body.spin;
     body.velocity = keep * body.velocity + gain / body.mass * force;

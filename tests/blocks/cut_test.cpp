@@ -279,6 +279,33 @@ TEST(cut, a_joint_that_cuts_off_a_corner_becomes_the_corner)
         }
 }
 
+// A joint that meets the outline nearer than the limit to a corner, the first or another one, ends in this corner.
+TEST(cut, a_joint_that_meets_the_outline_beside_a_corner_ends_in_it)
+{
+    for (std::size_t first = 0; first < square.size(); ++first)
+        for (const Vector2d& corner : square)
+            for (const bool is_transposed : {false, true}) {
+                Polygon outline = square;
+                std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(first),
+                            outline.end());
+                const Scene scene = section(outline, 0.5);
+                const auto place = [&](double along, double across) {
+                    const Vector2d in(corner.x() > 5 ? -1 : 1, corner.y() > 5 ? -1 : 1);
+                    return Vector2d(corner + in.cwiseProduct(is_transposed ? Vector2d(across, along)
+                                                                           : Vector2d(along, across)));
+                };
+                Joints joints;
+                add_joint(joints, place(0.3, 0), place(5.3, 10));
+                const Blocks blocks = blocks::cut(scene, joints);
+                EXPECT_EQ(faults(scene, blocks), "");
+                ASSERT_EQ(blocks.block_area.size(), 2u);
+                EXPECT_NEAR(std::min(blocks.block_area[0], blocks.block_area[1]), 10 * 5.3 / 2, 1e-9)
+                    << corner.transpose() << ' ' << first << ' ' << is_transposed;
+                EXPECT_NEAR(blocks.report.largest_move, 0.3, 1e-9);
+                EXPECT_EQ(blocks.report.merged_vertices, 1);
+            }
+}
+
 // A corner that points at a joint, in every part of it. The joint then goes through the corner, and what is above it are two blocks.
 TEST(cut, a_joint_close_to_a_corner_goes_through_it)
 {
