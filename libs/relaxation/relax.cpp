@@ -181,7 +181,8 @@ public:
         const auto [in_all, h] = largest_displacement(a_);
         if (in_all > settings_.largest_displacement)
             give_up("the displacement of the rock at " + shown_place(a_.position[h]) +
-                        " exceeds the limit of " + shown_length(settings_.largest_displacement),
+                        " exceeds the limit of " + shown_length(settings_.largest_displacement) +
+                        " (--safety-displacement)",
                     true, steps);
         if (in_all > too_far_)
             give_up("the rock at " + shown_place(a_.position[h]) + " has moved " + shown_length(in_all) +
@@ -201,7 +202,10 @@ public:
     }
 
     // From here check_movement() and give_up() count displacements.
-    void begin_interval() { patience_ago_ = a_.displacement; }
+    void begin_interval()
+    {
+        patience_ago_ = a_.displacement;
+    }
 
     // The remaining displacement, by estimate, over the displacement since the start, or over a tenth of the whole
     // displacement if that is more: roots of sums over mass times length squared. Between two moments, the quotient

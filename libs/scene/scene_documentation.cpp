@@ -24,13 +24,14 @@ This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 * Every key has its unit in its name. A key that the programs do not know is an error, and so is a value of
   another type, one that is not finite, or one outside the range given here. A round bracket excludes its limit:
   [0, 0.5) is from 0 to below 0.5.
-* Keys that describe the ground have no default. Numerical settings have one.
+* Most keys that describe the ground have no default; the column *needed* shows those that have one. Most numerical settings
+  have one.
 * The section lies in the plane of x (to the right) and y (up). Angles in it run counter-clockwise from x. Bearings
   run clockwise from north.
 * **Signs.** Tension, extension and opening are positive in all programs and files. Keys with compression
   in their name are positive in compression. Strengths are positive numbers.
 * A date is a TOML date such as `1994-06-15`, if `start` is one, or a number of days since the start. If `start` is
-  a number, all dates are days counted as it is: with `start = 100`, `date = 130` is 30 days after it.
+  a number, all dates are numbers on the same scale of days: with `start = 100`, `date = 130` is 30 days after it.
 * A polygon lists its corners in order, in either direction. It is not closed: the last corner differs from the
   first.
 * A circle can replace a polygon: `{ center_m = [0, 8], radius_m = 4 }`. It has 32 corners on the circle, or `sides = n`.

@@ -196,8 +196,8 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
          number(
              "exponent", &WrittenLaw::exponent, no_unit, from(0).to(20),
              "Exponent of the power law: the probability density is proportional to the value to the power "
-             "of minus this exponent. A fit of the number of larger values gives an exponent smaller by 1. "
-             "Needed by the power law, refused by the others.")
+             "of minus this exponent. To an exponent that is fitted to the number of values larger than a given "
+             "one, add 1. Needed by the power law, refused by the others.")
              .optional()}};
 }
 
@@ -237,8 +237,8 @@ Table<WrittenOrientation> orientation_law()
     return {
         {"joint_set.orientation", inside, optional,
          "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, "
-         "Fisher's law describes the planes that a scanline meets in the section, along the normal of the "
-         "mean trace. The bootstrap describes all planes of the set. For segments and discs, both laws "
+         "Fisher's law is that of the planes that a scanline meets. This scanline lies in the section, normal to "
+         "the mean trace. The bootstrap describes all planes of the set. For segments and discs, both laws "
          "describe all joints in space. Joints at a larger angle to the section are met more often."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
@@ -466,8 +466,8 @@ Table<WrittenDensity> density_table()
     return {
         {"joint_set.density", inside, optional,
          "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
-         "shorten them. For lines it sets the mean spacing; a spacing that is given too has the form of the law "
-         "only. Scatter of the orientation is taken into account."},
+         "shorten them. For lines it sets the mean spacing; of a spacing that is also given only the law and the "
+         "relative scatter are used. Scatter of the orientation is taken into account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
                 "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. With Terzaghi's "
@@ -671,8 +671,8 @@ Table<Schedule> schedule()
 {
     const KeyInfo start{
         "start", "date", days, within(farthest_day),
-        "Start of time. With a date here all others may be dates, or numbers of days since it; with "
-        "a number all are days counted as it is."};
+        "Start of time. With a date here all others may be dates, or numbers of days since it. With "
+        "a number all dates are numbers on the same scale of days."};
     const auto calendar = [](Schedule& all) -> Calendar& { return all.calendar; };
     return {{"schedule", once, required, "Start and end."},
             {key_of<Schedule>(start, calendar, read_start).or_else(std::int64_t{0}),
@@ -747,10 +747,11 @@ Table<CreepSettings> creep()
         {"creep", once, optional,
          "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
          "given."},
-        {choice("scheme", &CreepSettings::scheme, creep_scheme_words(),
-                "Time scheme: the assumed force on a joint during a step. \"auto\" is fitted, and "
-                "linear force in steps during which loads change; the published one is stable only below a "
-                "limit.")
+        {choice(
+             "scheme", &CreepSettings::scheme, creep_scheme_words(),
+             "Time scheme: the assumed force on a joint during a step. \"auto\" takes \"fitted\", "
+             "and \"linear force\" in steps during which loads change. \"published\" is stable only if the step is below a "
+             "limit (theory manual, section 8).")
              .or_else(std::string("auto")),
          number("step_days", &CreepSettings::step, days, step, "Time step.").optional(),
          number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
@@ -780,8 +781,9 @@ Table<Scene> zones()
              "quadratic, with three more gridpoints in the middles of its sides. Zones of constant strain are too "
              "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
              "much at the same size. Quadratic zones are for small displacements.")
-             .optional("quadratic by the implicit engine, without [large_displacements], if a rock has law "
-                       "\"Mohr-Coulomb\" or there are no [[joint_set]] and [[mapped]]; else constant strain"),
+             .optional(
+                 "quadratic, with the implicit engine and without [large_displacements], if a rock has the law "
+                 "\"Mohr-Coulomb\", or if there is neither a [[joint_set]] nor a [[mapped]]; otherwise constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones have the size size_m; outside they are larger. Without it they have this "
@@ -829,9 +831,10 @@ Table<Equilibrium> equilibrium()
                 "takes the implicit one unless the masses are real.")
              .former_word(std::string(former_engine_word), std::string(engine_word_for_it))
              .or_else(std::string("auto")),
-         number("tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
-                "Largest unbalanced force ratio of an equilibrium. Dynamic relaxation also needs a remaining "
-                "displacement below 1000 times this share of the displacement.")
+         number(
+             "tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
+             "Largest unbalanced force ratio of an equilibrium. In dynamic relaxation the "
+             "remaining displacement is also at most 1000 times the tolerance times the displacement of the search, and a tenth of it.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")
@@ -890,7 +893,7 @@ Table<LargeDisplacements> large_displacements()
              .optional("none"),
          number(
              "stiffness_damping_s", &LargeDisplacements::stiffness_damping, seconds, from(0).to(10),
-             "Dashpots of zones and closed joints, over their springs. Removes the energy of impacts and of "
+             "Stiffness-proportional damping: viscosity of the dashpots of zones and closed joints over the stiffness of their springs. Removes the energy of impacts and of "
              "vibration; shortens the time step.")
              .or_else(1e-4),
          number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),

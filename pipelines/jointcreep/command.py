@@ -124,7 +124,8 @@ def options_of(arguments):
             others.append(pathlib.Path(word))
         elif word.startswith("-") or source is not None:
             near = difflib.get_close_matches(word, known, 1) if word.startswith("--") else []
-            raise NotWanted(f'unknown option or second input "{word}"' + (f"; did you mean {near[0]}?" if near else "") + f"\n{usage()}")
+            of_demsolve = '; options of demsolve follow "--"' if SUBCOMMANDS[name].passes_on and word.startswith("--") else ""
+            raise NotWanted(f'unknown option or second input "{word}"' + (f"; did you mean {near[0]}?" if near else of_demsolve) + f"\n{usage()}")
         else:
             source = word
     if source is None or not found.get("output"):

@@ -261,7 +261,8 @@ def pairs_of(text, points):
         cuts = [(",".join(words[:at]).strip(), ",".join(words[at:]).strip()) for at in range(1, len(words))]
         fitting = [cut for cut in cuts if cut[0] in points and cut[1] in points and cut[0] != cut[1]]
         if not fitting:
-            raise NotWanted(f'--pairs: "{part}" is not two points of the result, with a comma between; there are: {", ".join(points)}')
+            known = ", ".join(f'"{point}"' for point in points)
+            raise NotWanted(f'--pairs: "{part}" is not two points of the result, with a comma between; there are: {known}')
         pairs.append(fitting[0])
     if not pairs:
         raise NotWanted('--pairs has no pair; expected such as "left wall,right wall; crown,floor"')
@@ -269,41 +270,43 @@ def pairs_of(text, points):
 
 
 def relative_displacements(source, folder, wanted):
-    """Parts of the page about pairs of monitoring points: closure, and displacement of the first relative to the second. wanted: pairs in
-    words, as pairs_of() reads them; None: pairs of all points that are not on monitoring lines, those that move most against each other."""
+    """Parts of the page about pairs of monitoring points: closure, and displacement of the first relative to the second, by stage. wanted:
+    pairs in words, as pairs_of() reads them; None: pairs of all points that are not on monitoring lines, those that move most against each
+    other."""
+    import figure
     from plot_histories import of_no_line
-    result = reading.File(source)
-    history = result.history()
+    history = reading.File(source).history()
+    place, first_row = dict(zip(history.point, history.position)), dict(zip(history.point, history.first_reading_row))
+    found = {}
     with h5py.File(source) as file:
         names = [history.point[at] for at in of_no_line(file, history.point)]
-    pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2)) if names else []
-    place, rows = dict(zip(history.point, history.position)), []
-    first_row = dict(zip(history.point, history.first_reading_row))
-    has_readings = any(first_row[name] > 0 for pair in pairs for name in pair)
-    for one, other in pairs:
-        relative = history.relative(one, other)
-        there = np.flatnonzero(np.isfinite(relative[:, 0]))
-        if len(there):
-            last, first, closure = there[-1], max(first_row[one], first_row[other]), history.closure(one, other)
-            read = (1e3 * float(closure[last] - closure[first]) if first < last else "",) if has_readings else ()
-            rows.append((one, other, float(np.linalg.norm(place[one] - place[other])), *(1e3 * float(value) for value in (
-                closure[last], *relative[last])), *read, "" if last == len(history.time) - 1 else
-                f"until day {history.time[last]:.12g}: one of them is excavated"))
-    if not rows:
+        pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2))
+        has_readings = any(first_row[name] > 0 for pair in pairs for name in pair)
+        for one, other in pairs:
+            relative, closure = 1e3 * history.relative(one, other), 1e3 * history.closure(one, other)
+            rows = np.flatnonzero(np.isfinite(closure))
+            if not len(rows):
+                continue
+            last, first = rows[-1], max(first_row[one], first_row[other])
+            is_gone = last < len(history.time) - 1
+            found[one, other] = [
+                (history.event[row] or ("before one is excavated" if is_gone else "end of the run"), figure.day_of(file, history.time[row]), one,
+                 other, float(np.linalg.norm(place[one] - place[other])), float(closure[row]), *map(float, relative[row]),
+                 *((float(closure[row] - closure[first]) if first < row else "",) * has_readings))
+                for row in rows if history.event[row] or row == last]
+    if not found:
         return []
-    count = len(rows)
-    by_size = rows if wanted else sorted(rows, key=lambda row: -np.hypot(*row[4:6]))
-    if not wanted and count > MOST_PAIRS:
-        rows = by_size[:MOST_PAIRS]
-    which = f" The {MOST_PAIRS} of {count} pairs that move most against each other; --pairs of jointcreep report chooses others." \
-        if len(rows) < count else "" if wanted else " --pairs of jointcreep report chooses pairs."
+    by_size = list(found) if wanted else sorted(found, key=lambda pair: -np.hypot(*found[pair][-1][6:8]))
+    shown = by_size[:MOST_PAIRS] if not wanted else by_size
+    which = f" The {MOST_PAIRS} of {len(found)} pairs that move most against each other; --pairs of jointcreep report chooses others." \
+        if len(shown) < len(found) else "" if wanted else " --pairs of jointcreep report chooses pairs."
     return ["<h3>Relative displacements</h3>",
             "<p>Closure: by how much the distance of two points has become smaller, as a tape measures it; negative where they move apart. "
             "Relative x, y: displacement of the first point less that of the second. All since the in-situ equilibrium"
             f"{', and the closure also since both points have been read' * has_readings}.{escaped(which)}</p>",
-            table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)",
-                   *["closure since the first readings (mm)"] * has_readings, ""], rows),
-            drawn("histories", source, folder, "Closure of pairs of points.", pair=[row[:2] for row in by_size[:DRAWN_PAIRS]])]
+            table(["stage", "date", "point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)",
+                   *["closure since the first readings (mm)"] * has_readings], [row for pair in shown for row in found[pair]]),
+            drawn("histories", source, folder, "Closure of pairs of points.", pair=by_size[:DRAWN_PAIRS])]
 
 
 def checks(source, programs):
@@ -474,6 +477,8 @@ def write(source, output, programs, pairs=None, window=None, others=(), notes=No
                  for one in sources]
     title, parts = found[0]
     if others:
+        titles = [title for title, _ in found]
+        found = [(f"{title} ({one})" if titles.count(title) > 1 else title, its_parts) for one, (title, its_parts) in zip(sources, found)]
         title, parts = f"Report of {len(found)} results", ["<ol>" + "".join(f"<li>{escaped(of_one)}</li>" for of_one, _ in found) + "</ol>"]
         for number, (of_one, its_parts) in enumerate(found, 1):
             parts += [f"<h1>{number}. {escaped(of_one)}</h1>", *its_parts]

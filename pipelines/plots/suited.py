@@ -44,7 +44,7 @@ def state_fields(scene):
 AROUND = (1.0, 0.5, 0.25, 0.1)  # rock on each side of moving blocks, over their larger side; the first that gives a small part, else the last
 FILLED = 0.8  # share of the section's area from which a part of it is no enlargement
 SMALL = 0.25  # share of the section's area up to which moving blocks, with the rock around them, are a small part of it
-HALF = 0.5  # of the section's width or height; the faces of stages have pictures of their own if they, with rock around, are at most so large
+LARGEST_DETAIL = 0.6  # of the section's width or height; the faces of stages have pictures of their own if they, with rock around, are at most so large
 
 
 def number(value, variables):
@@ -123,7 +123,7 @@ def detail(scene):
         section = places_of(scene["section"]["outline_m"], variables)
         corners = places_of([stage["remove_m"] for stage in scene.get("stage", [])], variables)
         window, shares = surroundings(faces(corners, section), section)
-        return window if 0 < min(shares) <= HALF else None
+        return window if 0 < min(shares) <= LARGEST_DETAIL else None
     except (KeyError, TypeError, ValueError, ZeroDivisionError):  # no stage, or a scene that nobody has checked; jointgen says it
         return None
 

@@ -437,7 +437,7 @@ class Run(ChainTest):
             (["none.toml", "-o", "out"], 4, "none.toml: No such file"),
             (["scene.toml", "-o", "out", "-q", "-q"], 2, "-q is given twice"),
             (["scene.toml", "scene.toml", "-o", "out"], 2, 'second input "scene.toml"'),
-            (["scene.toml", "-o", "out", "--no-creep"], 2, 'unknown option or second input "--no-creep"'),
+            (["scene.toml", "-o", "out", "--no-creep"], 2, 'unknown option or second input "--no-creep"; options of demsolve follow "--"'),
             (["scene.toml", "-o", "out", "--", "--output=x.h5"], 2, '"--output=x.h5" after --: jointcreep run sets this option'),
             (["scene.toml", "-o", "out", "--", "-ox.h5"], 2, '"-ox.h5" after --'),
             (["scene.toml", "-o", "out", "--", "--checkpoint", "x.h5"], 2, '"--checkpoint" after --'),

@@ -1414,7 +1414,10 @@ class Reports(Studies):
         self.assertIn("<td>crest</td><td>floor</td>", page)
         self.assertIn(row, page)
         self.assertIn('alt="Closure of pairs of points."', page)
-        self.assertIn(">until day 2: one of them is excavated<", page[page.index("Relative displacements"):][:3000])
+        table = page[page.index("Relative displacements"):page.index("Closure of pairs of points.")]
+        self.assertIn("<td>before one is excavated</td><td>day 2</td>", table)
+        stages = re.findall(r"<tr><td>([^<]*)</td><td>[^<]*</td><td>crest</td><td>floor</td>", table)
+        self.assertEqual(stages, [*filter(None, data["/history/event"]), "end of the run"])
         drawn = plots.draw("histories", result, pair=[("crest", "floor")]).axes[0].lines[0].get_ydata()
         self.assertAlmostEqual(drawn[-1], 1e3 * closure, places=12)
         for pairs, code in (("floor,crest", 0), ("floor,none", 2), ("floor", 2), (" ; ", 2), ("floor,floor", 2)):
