@@ -63,7 +63,7 @@ def in_runs(parameter, value):
         ends = [parameter.constants["lowest"], parameter.constants["highest"]]
     low, high = sorted(factor * end for end in ends) if factor else (0, 0)
     if not has_mean:
-        return f"{number(low)} to {number(high)}"
+        return number(low) if low == high else f"{number(low)} to {number(high)}"
     cut = [f"at least {number(low)}"] * math.isfinite(low) + [f"at most {number(high)}"] * math.isfinite(high)
     mean, deviation = factor * parameter.constants["mean"], abs(factor * parameter.constants["deviation"])
     return ", ".join([f"{parameter.law}, mean {number(mean)}", f"standard deviation {number(deviation)}", *cut])

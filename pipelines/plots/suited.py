@@ -5,6 +5,7 @@
 """
 
 import ast
+import math
 import operator
 import sys
 import tomllib
@@ -47,19 +48,26 @@ SMALL = 0.25  # share of the section's area up to which moving blocks, with the 
 LARGEST_DETAIL = 0.6  # of the section's width or height; the faces of stages have pictures of their own if they, with rock around, are at most so large
 
 
+OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: math.pow}
+FUNCTIONS = {"exp": math.exp, "ln": math.log, "sqrt": math.sqrt, "abs": abs, "min": min, "max": max,
+             "sind": lambda angle: math.sin(math.radians(angle)), "cosd": lambda angle: math.cos(math.radians(angle)),
+             "tand": lambda angle: math.tan(math.radians(angle)), "atand": lambda value: math.degrees(math.atan(value))}
+
+
 def number(value, variables):
-    """A number of a scene, or of a text such as "2 * H / 3" with names of its table [variables]; None of anything else."""
+    """A number of a scene, or of a formula such as "2 * H / tand(dip)" with names of its table [variables]; None of anything else."""
     if isinstance(value, str):
+        if "**" in value:  # a power is a^b
+            return None
         try:
-            return computed(ast.parse(value.strip(), mode="eval").body, variables)
-        except (SyntaxError, ZeroDivisionError, RecursionError):
+            return computed(ast.parse(value.strip().replace("^", "**"), mode="eval").body, variables)
+        except (SyntaxError, ArithmeticError, ValueError, TypeError, RecursionError):
             return None
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
 
 def computed(node, variables):
-    """The value of a parsed sum of names and numbers; None if it is something else."""
-    signs = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+    """The value of a parsed formula; None if it is something else."""
     if isinstance(node, ast.Constant):
         return number(node.value, {}) if not isinstance(node.value, str) else None
     if isinstance(node, ast.Name):  # a variable may be a text of others, not of itself
@@ -67,10 +75,14 @@ def computed(node, variables):
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
         value = computed(node.operand, variables)
         return -value if value is not None and isinstance(node.op, ast.USub) else value
-    if isinstance(node, ast.BinOp) and type(node.op) in signs:
-        sides = [computed(side, variables) for side in (node.left, node.right)]
-        return None if None in sides else signs[type(node.op)](*sides)
-    return None
+    if isinstance(node, ast.BinOp) and type(node.op) in OPERATIONS:
+        function, values = OPERATIONS[type(node.op)], [node.left, node.right]
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in FUNCTIONS and not node.keywords:
+        function, values = FUNCTIONS[node.func.id], node.args
+    else:
+        return None
+    values = [computed(value, variables) for value in values]
+    return None if None in values else function(*values)
 
 
 def places_of(value, variables):

@@ -674,7 +674,8 @@ class Suited(ChainTest):
         scene = {"variables": {"B": 10, "H": "3 * B"}, "section": {"outline_m": [[-300, -300], [300, -300], [300, 300], [-300, 300]]},
                  "stage": [stage], "point": [{"at_m": ["B", "H / 2"]}]}
         self.assertEqual(detail(scene), [-40, -30, 40, 60])
-        for text in ("H", "x", "a b", "1 / 0", "'a'", "H.real", "[1]", "2 ** 9", ""):
+        self.assertAlmostEqual(number("B / tand(45) + max(1, 2^3) - abs(-atand(0))", {"B": 12}), 20, places=12)
+        for text in ("H", "x", "a b", "1 / 0", "'a'", "H.real", "[1]", "2 ** 9", "", "ln(0)", "min()", "tand", "open('x')", "max(1, x)"):
             self.assertIsNone(number(text, {"H": "H"}), text)
 
     def test_an_excavation_that_reaches_the_side(self):
@@ -703,7 +704,7 @@ class Suited(ChainTest):
         self.assertEqual(detail({**cavern, "point": []}), detail(cavern))
         for stages in [], [{"remove_m": [[[200, 200], [205, 200], [200, 205]]]}]:  # none, and one outside of the section
             self.assertIsNone(detail({**cavern, "stage": stages}))
-        for half, part in ((78, [-39, -45, 39, 45]), (77.9, None)):  # as wide as the section, or nearly half of it
+        for half, part in ((65.1, [-39, -45, 39, 45]), (64.9, None)):  # 0.6 times as wide as the section, nearly
             self.assertEqual(detail({**cavern, "section": {"outline_m": [[-half, -60], [half, 60]]}}), part)
         import plot_section
         import figure
