@@ -290,9 +290,10 @@ def relative_displacements(source, folder, wanted):
             last, first = rows[-1], max(first_row[one], first_row[other])
             is_gone = last < len(history.time) - 1
             found[one, other] = [
-                (history.event[row] or ("before one is excavated" if is_gone else "end of the run"), figure.day_of(file, history.time[row]), one,
-                 other, float(np.linalg.norm(place[one] - place[other])), float(closure[row]), *map(float, relative[row]),
-                 *((float(closure[row] - closure[first]) if first < row else "",) * has_readings))
+                (history.event[row] or ("" if is_gone else "end of the run"), figure.day_of(file, history.time[row]), one, other,
+                 float(np.linalg.norm(place[one] - place[other])), float(closure[row]), *map(float, relative[row]),
+                 *((float(closure[row] - closure[first]) if first < row else "",) * has_readings),
+                 "one of them is excavated next" if is_gone and row == last else "")
                 for row in rows if history.event[row] or row == last]
     if not found:
         return []
@@ -305,7 +306,7 @@ def relative_displacements(source, folder, wanted):
             "Relative x, y: displacement of the first point less that of the second. All since the in-situ equilibrium"
             f"{', and the closure also since both points have been read' * has_readings}.{escaped(which)}</p>",
             table(["stage", "date", "point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)",
-                   *["closure since the first readings (mm)"] * has_readings], [row for pair in shown for row in found[pair]]),
+                   *["closure since the first readings (mm)"] * has_readings, ""], [row for pair in shown for row in found[pair]]),
             drawn("histories", source, folder, "Closure of pairs of points.", pair=by_size[:DRAWN_PAIRS])]
 
 
