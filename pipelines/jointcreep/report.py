@@ -119,6 +119,11 @@ def failure_in_words(file):
     return f"<b>{escaped(when)}</b>: {escaped(reason)}.{undecided}"
 
 
+def rows_by_stage(events, rows):
+    """Of some rows of a history those after a stage, and the last one."""
+    return [row for row in rows if events[row] or row == rows[-1]]
+
+
 def by_stage(file):
     """Parts of the page: displacements of the points after each stage, and in the end. Points of monitoring lines are in their picture."""
     import figure
@@ -126,10 +131,7 @@ def by_stage(file):
     names, events, time = texts(file, "/history/point"), texts(file, "/history/event"), file["/history/time"][()]
     moves, present = 1e3 * file["/history/displacement"][()], file["/history/present"][()] == 1
     chosen, rows, gone = of_no_line(file, names), [], set()
-    last = len(time) - 1
-    at_stages = [row for row in range(len(time)) if events[row]]
-    ends = [] if last in at_stages else [last]
-    for row in [*at_stages, *ends]:
+    for row in rows_by_stage(events, range(len(time))):
         day = figure.day_of(file, time[row])
         for point in chosen:
             if names[point] in gone:
@@ -275,10 +277,10 @@ def relative_displacements(source, folder, wanted):
     other."""
     import figure
     from plot_histories import of_no_line
-    history = reading.File(source).history()
-    place, first_row = dict(zip(history.point, history.position)), dict(zip(history.point, history.first_reading_row))
     found = {}
     with h5py.File(source) as file:
+        history = reading.history_of(file)
+        place, first_row = dict(zip(history.point, history.position)), dict(zip(history.point, history.first_reading_row))
         names = [history.point[at] for at in of_no_line(file, history.point)]
         pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2))
         has_readings = any(first_row[name] > 0 for pair in pairs for name in pair)
@@ -294,11 +296,11 @@ def relative_displacements(source, folder, wanted):
                  float(np.linalg.norm(place[one] - place[other])), float(closure[row]), *map(float, relative[row]),
                  *((float(closure[row] - closure[first]) if first < row else "",) * has_readings),
                  "one of them is excavated next" if is_gone and row == last else "")
-                for row in rows if history.event[row] or row == last]
+                for row in rows_by_stage(history.event, rows)]
     if not found:
         return []
     by_size = list(found) if wanted else sorted(found, key=lambda pair: -np.hypot(*found[pair][-1][6:8]))
-    shown = by_size[:MOST_PAIRS] if not wanted else by_size
+    shown = by_size if wanted else by_size[:MOST_PAIRS]
     which = f" The {MOST_PAIRS} of {len(found)} pairs that move most against each other; --pairs of jointcreep report chooses others." \
         if len(shown) < len(found) else "" if wanted else " --pairs of jointcreep report chooses pairs."
     return ["<h3>Relative displacements</h3>",
