@@ -101,7 +101,7 @@ inline const Parameter dilation_until{
     from(0).to(1000),
     WithBridges::own,
     WithStrengthDivided::same,
-    "Slip at which dilation ends, that of rock bridges, too. 0: dilation does not end.",
+    "Slip at which dilation ends; also for rock bridges. 0: it does not end.",
     0.0,
     &JointMaterial::dilation_until,
     &EquivalentJoints::dilation_until};

@@ -169,8 +169,9 @@ std::vector<Field> fields_of(States& states)
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
          "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
-         "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of a contact that opens later is this gap "
-         "(or minus the closure of its spring at that time) plus relative_displacement - crept - dilation."},
+         "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of an open contact is initial_gap + "
+         "relative_displacement - crept - dilation. If the contact was closed in situ, minus the closure of its spring there takes the "
+         "place of initial_gap."},
     };
     // clang-format on
 }

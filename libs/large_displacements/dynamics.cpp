@@ -247,7 +247,9 @@ void Dynamics::find_time_step(bool begins)
     now_.stiffest_gridpoint = static_cast<Index>(stiffest - sums.begin());
 
     now_.inverse_mass = lumped_masses(assembly_);
-    double highest = 0; // frequency squared
+    for (const auto& tie : assembly_.tied)
+        now_.inverse_mass[tie[0]] = 0; // moves with the other, which has its mass
+    double highest = 0;                // frequency squared
     for (const Body& body : bodies_) {
         double sum = 0;
         for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
@@ -300,10 +302,7 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
         now_.force[g] = force;
     });
     contacts_.add_forces(now_.force, assembly_.threads);
-    for (const auto& [follower, leader] : assembly_.tied) {
-        now_.force[leader] += now_.force[follower];
-        now_.force[follower].setZero();
-    }
+    give_forces_to_leaders(assembly_, now_.force);
 }
 
 // Forces of dashpots on gridpoints, of zones and contacts; those of ties are at their leaders [N/m].
@@ -311,13 +310,18 @@ std::vector<Vector2d> Dynamics::forces_of_dashpots() const
 {
     std::vector<Vector2d> force(now_.place.size(), Vector2d::Zero());
     contacts_.add_forces_of_dashpots(force);
-    for (std::size_t z = 0; z < zones_.zone.size(); ++z)
-        if (deforms(z))
-            rock::add_forces_of_dashpots(assembly_.zones, zones_, static_cast<Index>(z), now_.place, force);
-    for (const auto& [follower, leader] : assembly_.tied) {
-        force[leader] += force[follower];
-        force[follower].setZero();
+    if (any_deforms_) {
+        std::vector<Vector2d> on_corners(zones_.corner_force.size(), Vector2d::Zero());
+        for_each(static_cast<Index>(zones_.zone.size()), assembly_.threads, [&](Index z) {
+            if (deforms(z))
+                rock::take_corner_forces_of_dashpots(assembly_.zones, zones_, z, now_.place, on_corners);
+        });
+        for_each(static_cast<Index>(force.size()), assembly_.threads, [&](Index g) {
+            for (const Index corner : assembly_.zones.corners[g])
+                force[g] += on_corners[corner];
+        });
     }
+    give_forces_to_leaders(assembly_, force);
     return force;
 }
 
@@ -431,12 +435,14 @@ void Dynamics::step()
         find_time_step();
 }
 
-// Kinetic energy that rounding errors of positions may give or take in a step, by their impulse from the stiffest springs
-// and dashpots, on the mass that the step was chosen for [J/m].
+// Kinetic energy that rounding errors of positions may give or take in a step: by their impulses on all gridpoints, which
+// are independent of each other, from the stiffest springs and dashpots, and on a mass no larger than that of the
+// stiffest gridpoint [J/m]. No place is farther from the middle than high_.
 double Dynamics::energy_of_rounding() const
 {
     const double beta = settings_.stiffness_damping, half = now_.dt / (2 * safety);
-    const double impulse = rounding_of_place * high_.norm() * now_.stiffest * (now_.dt + beta); // [N s/m]
+    const double impulse = std::sqrt(static_cast<double>(now_.place.size())) * rounding_of_place *
+                           high_.norm() * now_.stiffest * (now_.dt + beta); // [N s/m]
     const double one_over_mass = now_.stiffest > 0 ? 1 / (now_.stiffest * half * (half + beta)) : 0.0;
     return impulse * (now_.fastest + impulse * one_over_mass / 2);
 }
@@ -541,11 +547,13 @@ double Dynamics::largest_of(const std::vector<Vector2d>& force) const
 Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) const
 {
     Balance found;
-    std::vector<Vector2d> without = forces_of_dashpots();
-    for (std::size_t g = 0; g < without.size(); ++g)
-        without[g] = now_.force[g] - without[g];
-    found.largest = largest_of(now_.force);
-    found.without = largest_of(without);
+    found.largest = found.without = largest_of(now_.force);
+    if (settings_.stiffness_damping > 0) {
+        std::vector<Vector2d> without = forces_of_dashpots();
+        for (std::size_t g = 0; g < without.size(); ++g)
+            without[g] = now_.force[g] - without[g];
+        found.without = largest_of(without);
+    }
     double sum = 0;
     Index n = 0;
     for (std::size_t g = 0; g < now_.place.size(); ++g) {

@@ -276,11 +276,10 @@ void FaceContacts::take_forces(Index active)
     const FacePair& pair = pairs_[active_[active]];
     const Index* const at = corner_place_.data() + 4 * static_cast<std::ptrdiff_t>(active);
     for (int end = 0; end < 2; ++end) {
-        const Vector2d force = pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero());
-        corner_force_[at[0]][end] = (1 - pair.on_a[end]) * force;
-        corner_force_[at[1]][end] = pair.on_a[end] * force;
-        corner_force_[at[2]][end] = -(1 - pair.on_b[end]) * force;
-        corner_force_[at[3]][end] = -pair.on_b[end] * force;
+        const auto shares =
+            pair.on_gridpoints(end, pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero()));
+        for (int corner = 0; corner < 4; ++corner)
+            corner_force_[at[corner]][end] = shares[corner];
     }
 }
 
@@ -303,10 +302,11 @@ void FaceContacts::add_forces_of_dashpots(std::vector<Vector2d>& force) const
             continue;
         const auto &a = faces_.gridpoint[pair.a], &b = faces_.gridpoint[pair.b];
         for (int end = 0; end < 2; ++end) {
-            force[a[0]] += (1 - pair.on_a[end]) * pair.held[end];
-            force[a[1]] += pair.on_a[end] * pair.held[end];
-            force[b[0]] -= (1 - pair.on_b[end]) * pair.held[end];
-            force[b[1]] -= pair.on_b[end] * pair.held[end];
+            const auto shares = pair.on_gridpoints(end, pair.held[end]);
+            force[a[0]] += shares[0];
+            force[a[1]] += shares[1];
+            force[b[0]] += shares[2];
+            force[b[1]] += shares[3];
         }
     }
 }

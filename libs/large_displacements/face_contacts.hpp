@@ -92,6 +92,13 @@ struct FacePair {
             end += by;
     }
     bool is_bonded() const { return is_known && !is_broken; }
+    // Shares of a force on a at an end of the closed part, and of the opposite one on b: on the gridpoints of a, then
+    // of b [N/m].
+    std::array<Vector2d, 4> on_gridpoints(int end, const Vector2d& force_on_a) const
+    {
+        return {(1 - on_a[end]) * force_on_a, on_a[end] * force_on_a, -(1 - on_b[end]) * force_on_a,
+                -on_b[end] * force_on_a};
+    }
     joint::State state() const
     {
         return {.slip = 0, .dilation = dilation, .is_broken = is_broken, .memory = memory};

@@ -129,6 +129,14 @@ void part_ties(Assembly& assembly, Index stage)
     put_on_rollers(assembly, root);
 }
 
+void give_forces_to_leaders(const Assembly& assembly, std::vector<Vector2d>& force)
+{
+    for (const auto& [follower, leader] : assembly.tied) {
+        force[leader] += force[follower];
+        force[follower].setZero();
+    }
+}
+
 void find_forces(Assembly& assembly)
 {
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
@@ -150,10 +158,7 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone)
     if (!assembly.tied.empty()) {
 #pragma omp barrier
 #pragma omp single
-        for (const auto& [follower, leader] : assembly.tied) {
-            assembly.force[leader] += assembly.force[follower];
-            assembly.force[follower].setZero();
-        }
+        give_forces_to_leaders(assembly, assembly.force);
     }
 }
 

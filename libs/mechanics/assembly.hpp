@@ -85,6 +85,9 @@ inline Vector2d free_part(const Assembly& assembly, std::size_t g, const Vector2
 // Ends the ties that a stage separates, and finds what supports leave free.
 void part_ties(Assembly& assembly, Index stage);
 
+// Adds the forces on followers of ties to those on their leaders; followers keep none [N/m].
+void give_forces_to_leaders(const Assembly& assembly, std::vector<Vector2d>& force);
+
 // Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into
 // their states: calling it again changes nothing more.
 void find_forces(Assembly& assembly);

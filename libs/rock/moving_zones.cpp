@@ -95,16 +95,13 @@ void find_force(const Zones& zones, MovingZones& moving, Index z, const std::vec
                        moving.corner_force.data() + 3 * static_cast<std::ptrdiff_t>(z));
 }
 
-void add_forces_of_dashpots(const Zones& zones, const MovingZones& moving, Index z,
-                            const std::vector<Vector2d>& place, std::vector<Vector2d>& force)
+void take_corner_forces_of_dashpots(const Zones& zones, const MovingZones& moving, Index z,
+                                    const std::vector<Vector2d>& place, std::vector<Vector2d>& corner_force)
 {
     const MovingZone& zone = moving.zone[z];
-    const Polar polar = polar_of(zone.gridpoint, place, zone.inverse);
-    std::array<Vector2d, 3> of_corners;
-    take_corner_forces(zone, polar, zone.held, yield_of(zones, moving.yielding, z) != nullptr,
-                       of_corners.data());
-    for (std::size_t corner = 0; corner < 3; ++corner)
-        force[zone.gridpoint[corner]] += of_corners[corner];
+    take_corner_forces(zone, polar_of(zone.gridpoint, place, zone.inverse), zone.held,
+                       yield_of(zones, moving.yielding, z) != nullptr,
+                       corner_force.data() + 3 * static_cast<std::ptrdiff_t>(z));
 }
 
 void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& place, Zones& zones)

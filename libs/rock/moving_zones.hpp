@@ -62,10 +62,10 @@ MovingZones moving_zones_of(const Zones& zones, const std::vector<Vector2d>& pla
 void find_force(const Zones& zones, MovingZones& moving, Index z, const std::vector<Vector2d>& place,
                 double viscosity, ZoneSums& sums);
 
-// Adds the part of one zone's corner forces that its dashpots have to those on gridpoints [N/m]; after find_force() with
-// these places.
-void add_forces_of_dashpots(const Zones& zones, const MovingZones& moving, Index z,
-                            const std::vector<Vector2d>& place, std::vector<Vector2d>& force);
+// Sets the part of one zone's corner forces that its dashpots have, in the order of MovingZones::corner_force [N/m]; after
+// find_force() with these places.
+void take_corner_forces_of_dashpots(const Zones& zones, const MovingZones& moving, Index z,
+                                    const std::vector<Vector2d>& place, std::vector<Vector2d>& corner_force);
 
 // Writes Cauchy's stress and the plastic strain of one zone to `zones`.
 void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& place, Zones& zones);

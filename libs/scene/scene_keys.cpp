@@ -196,8 +196,8 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
          number(
              "exponent", &WrittenLaw::exponent, no_unit, from(0).to(20),
              "Exponent of the power law: the probability density is proportional to the value to the power "
-             "of minus this exponent. To an exponent that is fitted to the number of values larger than a given "
-             "one, add 1. Needed by the power law, refused by the others.")
+             "of minus this exponent. If you have fitted the exponent to the number of values that are larger than a given value, add 1 "
+             "to it. Needed by the power law, refused by the others.")
              .optional()}};
 }
 
@@ -466,8 +466,8 @@ Table<WrittenDensity> density_table()
     return {
         {"joint_set.density", inside, optional,
          "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
-         "shorten them. For lines it sets the mean spacing; of a spacing that is also given only the law and the "
-         "relative scatter are used. Scatter of the orientation is taken into account."},
+         "shorten them. For lines the density sets the mean spacing. If a spacing is given too, only its law and its relative "
+         "scatter are used. Scatter of the orientation is taken into account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
                 "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. With Terzaghi's "
@@ -833,8 +833,9 @@ Table<Equilibrium> equilibrium()
              .or_else(std::string("auto")),
          number(
              "tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
-             "Largest unbalanced force ratio of an equilibrium. In dynamic relaxation the "
-             "remaining displacement is also at most 1000 times the tolerance times the displacement of the search, and a tenth of it.")
+             "Largest unbalanced force ratio of an equilibrium. Dynamic relaxation also estimates the displacement that remains. Its "
+             "share in the displacement since the search began is then at most 1000 times the tolerance, and at most 0.1. If a tenth "
+             "of the whole displacement is larger, the share is that in this tenth.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")

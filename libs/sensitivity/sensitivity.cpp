@@ -9,19 +9,6 @@ namespace jointcreep::sensitivity
 
 using mechanics::Assembly;
 
-namespace
-{
-
-void take_ties(const Assembly& assembly, std::vector<Vector2d>& force)
-{
-    for (const auto& [follower, leader] : assembly.tied) {
-        force[leader] += force[follower];
-        force[follower].setZero();
-    }
-}
-
-} // namespace
-
 void scale(EquivalentJoints& joints, InSituStress& stress, Scaled scaled, double factor)
 {
     if (scaled.quantity == Scaled::horizontal_stress)
@@ -58,7 +45,7 @@ std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change
     std::vector<Vector2d> all(assembly.position.size(), Vector2d::Zero());
     for_each_force([&](const auto& force, const auto& its_change) { add_forces(force, its_change, all); },
                    assembly, change.forces);
-    take_ties(assembly, all);
+    give_forces_to_leaders(assembly, all);
     return all;
 }
 
@@ -71,7 +58,7 @@ std::vector<Vector2d> Sensitivity::forces_at_fixed_gridpoints(const Assembly& as
             add_forces_at_fixed_gridpoints(force, its_change, its_start, assembly.displacement, all);
         },
         assembly, change.forces, start_);
-    take_ties(assembly, all);
+    give_forces_to_leaders(assembly, all);
     return all;
 }
 

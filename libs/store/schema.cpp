@@ -29,7 +29,7 @@ std::vector<Field> fields_of(Names& names)
         {"/names/joint_material", &names.joint_material, {"joint_material"}, "1", any(),
          "Joint materials, as named in the scene."},
         {"/names/joint_set", &names.joint_set, {"joint_set"}, "1", any(),
-         "Joint sets, then the single joints, each as a set of its own, then the mapped sets."},
+         "Joint sets, then single joints (each is a set of its own), then sets of mapped traces."},
         {"/names/stage", &names.stage, {"stage"}, "1", any(), "Excavation stages, as named in the scene."},
     };
     // clang-format on
@@ -282,7 +282,7 @@ std::vector<Field> fields_of(Provenance& provenance)
 {
     // clang-format off
     return {
-        {"/scene", &provenance.scene, {}, "1", any(), "The scene's text, as it was read."},
+        {"/scene", &provenance.scene, {}, "1", any(), "Text of the scene, without changes."},
         {"/provenance/program", &provenance.program, {"program"}, "1", any(),
          "Programs that made this file and the files before it, in the order they ran; the last one wrote "
          "this file."},
@@ -580,7 +580,7 @@ const std::vector<Described>& dimensions()
         {"program", "a program of the chain that has run"},
         {"rock", "a rock of the scene"},
         {"joint_material", "a joint material of the scene"},
-        {"joint_set", "a joint set or single joint of the scene"},
+        {"joint_set", "a joint set, a single joint or a set of mapped traces of the scene"},
         {"stage", "an excavation stage of the scene"},
         {"joint", "a joint: a straight line of traces and rock bridges"},
         {"trace", "a joint trace: an open piece of a joint"},
@@ -591,7 +591,7 @@ const std::vector<Described>& dimensions()
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
-        {"gridpoint", "a corner of zones, split along joints"},
+        {"gridpoint", "a corner of zones; each side of a joint has its own"},
         {"released_gridpoint", "a gridpoint, within a stage; otherwise there is none"},
         {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},

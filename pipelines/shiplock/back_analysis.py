@@ -95,7 +95,7 @@ def found_words(row):
     if not row["low_95"] or not row["high_95"]:
         return "not resolved"
     value, low, high = (float(row[name]) for name in ("value", "low_95", "high_95"))
-    return f"{value:.2f} ({low:.2f} to {high:.2f}){'' if low <= MADE[row['factor']] <= high else ', without the true one'}"
+    return f"{value:.2f} ({low:.2f} to {high:.2f}){'' if low <= MADE[row['factor']] <= high else ', true factor outside'}"
 
 
 def sites_markdown(found, networks):

@@ -84,7 +84,7 @@ def rows_of(results, targets):
 
 
 def markdown(rows, zones, date):
-    lines = ["| point | total (mm) | geometry updated | of this geometry | engine | recorded (mm) | geometry updated | of this geometry | engine |",
+    lines = ["| point | total (mm) | updated minus small | geometry | engine | recorded (mm) | updated minus small | geometry | engine |",
              "|---|---|---|---|---|---|---|---|---|"]
     for name, values in rows:
         cells = [name]
