@@ -163,8 +163,8 @@ void complain(const std::string& program, std::string_view message)
     std::_Exit(code);
 }
 
-// Uses the stack that the work may need now. Where memory is limited, a stack that cannot grow later ends in a crash. A
-// small stack is left as it is. Throws std::bad_alloc where there is no room for it.
+// Grows the stack now to what the work may need. Where address space is limited, a stack that cannot grow later ends in a crash.
+// A small stack is left as it is. Throws std::bad_alloc where there is no room for it.
 [[gnu::noinline]] void reserve_stack()
 {
     constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
@@ -175,8 +175,7 @@ void complain(const std::string& program, std::string_view message)
     if (as_much == MAP_FAILED || munmap(as_much, enough + 64 * page) != 0)
         throw std::bad_alloc();
     [[maybe_unused]] volatile char room[enough];
-    for (std::size_t i = 0; i < enough; i += page)
-        room[i] = 0;
+    room[0] = 0; // the lowest address; pages between are taken when they are used
 }
 
 // The stack of OpenMP's threads as the environment has it [bytes]; 0 is the default. In kilobytes, or with a unit.

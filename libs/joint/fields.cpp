@@ -164,14 +164,14 @@ std::vector<Field> fields_of(States& states)
          "Opening by slip since the in-situ equilibrium. In a dynamic analysis: the mean of the faces that "
          "meet at the contact."},
         {"/states/bond_broken", &states.bond_broken, {"state", "contact"}, "1", between(0, 1),
-         "1 once the bonds of the contact are broken: it has its strength without bonds. In a dynamic "
-         "analysis: once they are broken on more than half of the faces that meet there."},
+         "1 once the contact has lost its bonds (cohesion and tensile strength), by opening, or by slip if it has a residual "
+         "strength. In a dynamic analysis: on more than half of the faces that meet there."},
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
          "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
          "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of an open contact is initial_gap + "
-         "relative_displacement - crept - dilation. If the contact was closed in situ, minus the closure of its spring there takes the "
-         "place of initial_gap."},
+         "relative_displacement - crept - dilation. If the contact was closed in situ, use -(closure of its "
+         "spring in situ) in place of initial_gap."},
     };
     // clang-format on
 }

@@ -236,10 +236,10 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, "
-         "Fisher's law is that of the planes that a scanline meets. This scanline lies in the section, normal to "
-         "the mean trace. The bootstrap describes all planes of the set. For segments and discs, both laws "
-         "describe all joints in space. Joints at a larger angle to the section are met more often."},
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines "
+         "Fisher's law describes the planes that a scanline meets which lies in the section, normal to the mean trace; the "
+         "bootstrap describes all planes of the set. For segments and discs both laws describe all joints in space. The section "
+         "cuts joints at a larger angle to it more often; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
                 "with replacement."),
@@ -468,10 +468,11 @@ Table<WrittenDensity> density_table()
          "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
          "shorten them. For lines the density sets the mean spacing. If a spacing is given too, only its law and its relative "
          "scatter are used. Scatter of the orientation is taken into account."},
-        {number("P10_per_m", &W::p10, per_m, dense,
-                "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
-                "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. With Terzaghi's "
-                "correction.")
+        {number(
+             "P10_per_m", &W::p10, per_m, dense,
+             "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
+             "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. Give it as counted: jointgen applies "
+             "Terzaghi's correction.")
              .optional(),
          number("P20_per_m2", &W::p20, per_m2, dense, "Trace midpoints per area of section; not of lines.")
              .optional(),
@@ -757,9 +758,10 @@ Table<CreepSettings> creep()
          number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
                 "Allowed estimated error of a step; the time steps are chosen by it.")
              .optional(),
-         number("first_step_days", &CreepSettings::first_step, days, step,
-                "First step tried after the start, stages and dates; with tolerance_m.")
-             .optional("by the fastest joint"),
+         number(
+             "first_step_days", &CreepSettings::first_step, days, step,
+             "First step tried after the start, and after each stage and date of a load history; with tolerance_m.")
+             .optional("0.1 of the shortest retardation time"),
          number("shortest_step_days", &CreepSettings::shortest_step, days, step,
                 "The tolerance makes no step shorter than this; with tolerance_m.")
              .optional(),
@@ -767,7 +769,7 @@ Table<CreepSettings> creep()
                 "Longest step; with tolerance_m.")
              .optional(),
          number("stop_rate_mm_per_day", &CreepSettings::stop_rate, mm_per_day, above(0).to(1e6),
-                "Ends creep after the last stage once no point moves faster than this.")
+                "After the last stage creep ends once no gridpoint moves faster than this.")
              .optional()}};
 }
 
@@ -784,7 +786,8 @@ Table<Scene> zones()
              .optional(
                  "quadratic, with the implicit engine and without [large_displacements], if a rock has the law "
                  "\"Mohr-Coulomb\", or if there is neither a [[joint_set]] nor a [[mapped]]; otherwise constant strain"),
-         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side."),
+         number("size_m", &Scene::zone_size, metres, zone_sizes,
+                "Longest zone side; with fine_m inside that polygon."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones have the size size_m; outside they are larger. Without it they have this "
                  "size everywhere.")
@@ -826,16 +829,18 @@ Table<Equilibrium> equilibrium()
     using E = Equilibrium;
     return {
         {"equilibrium", once, optional, "How equilibrium is found."},
-        {choice("engine", &E::engine, engine_words(),
-                "Dynamic relaxation, or the implicit engine, which solves for the equilibrium at once; auto "
-                "takes the implicit one unless the masses are real.")
+        {choice(
+             "engine", &E::engine, engine_words(),
+             "Dynamic relaxation, or the implicit engine, which solves equations for the equilibrium. auto: the implicit engine, "
+             "and dynamic relaxation for each equilibrium that it does not find; with real masses or a step history only "
+             "dynamic relaxation.")
              .former_word(std::string(former_engine_word), std::string(engine_word_for_it))
              .or_else(std::string("auto")),
          number(
              "tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
-             "Largest unbalanced force ratio of an equilibrium. Dynamic relaxation also estimates the displacement that remains. Its "
-             "share in the displacement since the search began is then at most 1000 times the tolerance, and at most 0.1. If a tenth "
-             "of the whole displacement is larger, the share is that in this tenth.")
+             "Limit of the unbalanced force ratio and of the change of contact forces. Dynamic relaxation also estimates the "
+             "displacement that remains. It divides this by the displacement since the search began, or by a tenth of the whole "
+             "displacement if that is larger. The quotient must be at most 1000 times the tolerance, and at most 0.1.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")
@@ -850,8 +855,8 @@ Table<Equilibrium> equilibrium()
              .or_else(std::string("adaptive")),
          number(
              "mass_damping_per_s", &E::mass_damping, per_s, from(0).to(1e12),
-             "Mass-proportional damping; with damping = \"mass\", and only then. 0 with stiffness_damping_s "
-             "only.")
+             "Mass-proportional damping. Needed with damping = \"mass\", refused otherwise. It may be 0 only if "
+             "stiffness_damping_s is given.")
              .optional(),
          number("stiffness_damping_s", &E::stiffness_damping, seconds, above(0).to(1e6),
                 "Stiffness-proportional damping of zones, and dashpots in joints that neither slip nor are "
@@ -866,12 +871,12 @@ Table<Equilibrium> equilibrium()
              .or_else(std::int64_t{1}),
          number(
              "increments_tolerance", &E::increments_tolerance, no_unit, increments_tolerances,
-             "Increments chosen by error: from unloading_increments on, the run is made again with twice as "
-             "many, until displacements and joint tractions change by less than this share.")
+             "Increments chosen by error: the run begins with unloading_increments, and is repeated with twice as many, "
+             "until displacements and joint tractions change by less than this share.")
              .optional(),
          integer(
              "most_steps", &E::most_steps, from(1).to(2147483647),
-             "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. "
+             "Largest number of steps of dynamic relaxation for an equilibrium. If it is not enough, the exit code is 3. "
              "With [large_displacements] it limits the search for the in-situ equilibrium; longest_s limits "
              "the dynamic analyses.")
              .or_else(std::int64_t{1000000})}};
@@ -905,14 +910,13 @@ Table<LargeDisplacements> large_displacements()
              "Time in which the forces of excavated rock decrease to 0, and in which the creep of a step is "
              "added. It must be above 0 with [creep].")
              .or_else(0.0),
-         number(
-             "longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
-             "Longest time of a dynamic analysis. The first analysis begins at the equilibrium in situ. If rock "
-             "still moves at the end, the exit code is 3.")
+         number("longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
+                "Longest time of each dynamic analysis. If rock still moves at its end, the exit code is 3.")
              .or_else(60.0),
          number(
              "stop_s", &LargeDisplacements::stop, seconds, above(0).to(1e6),
-             "The dynamic analysis of the last stage ends at this time, at rest or not. Without it, at rest.")
+             "The dynamic analysis of the last stage ends this long after its beginning, at rest or not. Without this key it ends "
+             "at rest.")
              .optional(),
          number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
                 "The section and the balance of energy are recorded that often.")

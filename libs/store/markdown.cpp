@@ -87,8 +87,8 @@ The programs exchange HDF5 files. A file has all data that later programs need:
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.
 
-- Every dataset has the attributes `units` and `description`. Everything is in SI units, angles in radians,
-  except times since the start: they are in days. Only `/checkpoint/time` is in seconds. The unit `1` is that of plain numbers and of text.
+- Every dataset has the attributes `units` and `description`. Everything is in SI units, angles in radians.
+  Only times since the start are in days (but `/checkpoint/time` is in seconds). The unit `1` is that of plain numbers and of text.
 - `DIMENSION_LABELS` names the axes, as HDF5's dimension scales do: `file["/history/displacement"].dims[0].label` is "time" in h5py. The
   parts of a row, such as {x, y}, are the axis "component". Files of format 2.6 and before have no labels.
 - In `/history` the datasets `time`, `point` and `component` are dimension scales of the others. So `xarray.open_dataset()` finds names and

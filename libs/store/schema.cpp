@@ -205,8 +205,8 @@ std::vector<Field> fields_of(History& history)
         {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
          "1 while the point is there, 0 once it is removed."},
         {"/history/reset_row", &history.reset_row, {"time"}, "1", index_of("time"),
-         "Row of the last stage that resets displacements: they count from there. 0 before the first such "
-         "stage."},
+         "Row of the last stage that resets displacements. Subtract the displacement of this row to count from there. 0 before "
+         "the first such stage."},
     };
     // clang-format on
 }
@@ -230,7 +230,7 @@ std::vector<Field> fields_of(States& states)
     // clang-format off
     append(all, {
         {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
-         "State after the last stage that resets displacements: they count from there. 0 before the first "
+         "State after the last stage that resets displacements. Subtract its displacement to count from there. 0 before the first "
          "such stage."},
     });
     // clang-format on
@@ -282,7 +282,7 @@ std::vector<Field> fields_of(Provenance& provenance)
 {
     // clang-format off
     return {
-        {"/scene", &provenance.scene, {}, "1", any(), "Text of the scene, without changes."},
+        {"/scene", &provenance.scene, {}, "1", any(), "Text of the scene. Formulas are replaced by their numbers, and files that it names are added as [[file]] tables."},
         {"/provenance/program", &provenance.program, {"program"}, "1", any(),
          "Programs that made this file and the files before it, in the order they ran; the last one wrote "
          "this file."},
@@ -583,7 +583,7 @@ const std::vector<Described>& dimensions()
         {"joint_set", "a joint set, a single joint or a set of mapped traces of the scene"},
         {"stage", "an excavation stage of the scene"},
         {"joint", "a joint: a straight line of traces and rock bridges"},
-        {"trace", "a joint trace: an open piece of a joint"},
+        {"trace", "a joint trace: a piece of a joint without rock bridge"},
         {"vertex", "a point where edges meet"},
         {"edge", "a straight piece of the cut between blocks"},
         {"share", "a joint on an edge; where joints share an edge it has several"},
@@ -591,7 +591,8 @@ const std::vector<Described>& dimensions()
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
-        {"gridpoint", "a corner of zones; each side of a joint has its own"},
+        {"gridpoint",
+         "a corner of zones, or the middle of a side of a quadratic zone; each side of a joint has its own gridpoints"},
         {"released_gridpoint", "a gridpoint, within a stage; otherwise there is none"},
         {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},

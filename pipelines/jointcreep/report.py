@@ -204,9 +204,10 @@ def factor_of_safety(source, folder):
     return parts
 
 
-def of_run(source, programs, folder, pairs=None, window=None):
+def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
     """Title and parts of the page of a result file. pairs: of points, as relative_displacements(). window: x0, y0, x1, y1 [m], a part of
-    the section for pictures of states; None: as section-detail.png and blocks-detail.png have it."""
+    the section for pictures of states; None: as section-detail.png and blocks-detail.png have it. pictures: Paths, by name, of pictures of this
+    result that `jointcreep run` has drawn; they are not drawn again."""
     import figure  # matplotlib takes long to load
     from suited import detail
     with h5py.File(source) as file:
@@ -226,27 +227,32 @@ def of_run(source, programs, folder, pairs=None, window=None):
     parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
     parts += factor_of_safety(source, folder)
     window = window or detail(scene)
-    parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
-    parts += [drawn("section", source, folder, "Its stages and points.", window=window)] if window else []
-    parts += [drawn("blocks", source, folder, "Blocks by size.")]
-    parts += [drawn("blocks", source, folder, "Those around the excavation, with a scale of their own.", window=window)] if window else []
+
+    def shown(plot, made, caption, **options):
+        return picture(pictures[made], caption) if made in pictures else drawn(plot, source, folder, caption, **options)
+
+    parts += ["<h2>Section and network</h2>", shown("section", "section.png", "The section, its joints, stages and points.")]
+    parts += [shown("section", "section-detail.png", "Its stages and points.", window=window)] if window else []
+    parts += [shown("blocks", "blocks.png", "Blocks by size.")]
+    parts += [shown("blocks", "blocks-detail.png", "Those around the excavation, with a scale of their own.", window=window)] if window else []
     parts += ["<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
-            parts.append(drawn("histories", source, folder, caption, component=component))
+            parts.append(shown("histories", f"histories-{component}.png", caption, component=component))
         parts += displacements
         parts += relative_displacements(source, folder, pairs)
     elif pairs:
         raise NotWanted(f"--pairs: {source.name} has no monitoring points")
     if "monitoring_line" in scene:
-        parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
+        parts.append(shown("line", "lines.png", "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
     if failure:
-        parts.append(drawn("state", source, folder, "Moving blocks.", around_failure=True,
+        parts.append(shown("state", "failure.png", "Moving blocks.", around_failure=True,
                            magnify=1 if "large_displacements" in scene else 0))
         parts += moving_blocks(source)
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
-        parts.append(drawn("state", source, folder, caption, field=field, window=window))
+        is_displaced = "large_displacements" in scene and field != "contacts"  # the rock is drawn where it is
+        parts.append(shown("state", f"last-{field}.png", caption, field=field, window=window, magnify=1 if is_displaced else 0))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),
@@ -462,10 +468,10 @@ def of_notes(path):
     return parts
 
 
-def write(source, output, programs, pairs=None, window=None, others=(), notes=None):
+def write(source, output, programs, pairs=None, window=None, others=(), notes=None, pictures=()):
     """Writes the page of a result file or of a study's folder, or one page of several: those in `others`, too. output: a Path, or "-":
     standard output. pairs: of the points of a result, as relative_displacements(). window: of its pictures, as of_run(). notes: a Path of
-    the text that comes first."""
+    the text that comes first. pictures: of a result, as of_run()."""
     sources = [source, *others]
     for one in sources:
         check(one, pairs, window)
@@ -476,8 +482,8 @@ def write(source, output, programs, pairs=None, window=None, others=(), notes=No
     first = of_notes(notes) if notes else []
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as name:
         folder = pathlib.Path(name)
-        found = [of_study(one.resolve(), programs, folder) if one.is_dir() else of_run(one.resolve(), programs, folder, pairs, window)
-                 for one in sources]
+        found = [of_study(one.resolve(), programs, folder) if one.is_dir() else
+                 of_run(one.resolve(), programs, folder, pairs, window, pictures) for one in sources]
     title, parts = found[0]
     if others:
         titles = [title for title, _ in found]

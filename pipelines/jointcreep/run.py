@@ -46,7 +46,7 @@ class Step:
     command: list  # words: str, or Path of a file
     needs: list = dataclasses.field(default_factory=list)  # Paths of inputs that the command does not name
     options: list = dataclasses.field(default_factory=list)  # at the end of the command: such as do not change what it makes
-    draw: object = None  # draw(folder) does in this process what the command does, which saves loading
+    draw: object = None  # draw(Folder) does in this process what the command does, which saves loading
     solves: bool = False  # is demsolve, which may find no equilibrium and keeps checkpoints
 
     def inputs(self):
@@ -170,7 +170,7 @@ class Plan:
 
         def draw(folder):
             from . import plots  # matplotlib takes long to load
-            plots.save(name, folder / source, folder / output, **options)
+            plots.save(name, folder.out / source, folder.out / output, **options)
 
         output = pathlib.Path(f"{picture}.png")
         words = [word for option, value in options.items()
@@ -194,7 +194,8 @@ class Plan:
 
         def write(folder):
             from . import report
-            report.write(folder / result, folder / "report.html", self.programs, window=self.window)
+            pictures = {step.makes: folder.out / step.makes for step in steps if folder.has_made(step)}
+            report.write(folder.out / result, folder.out / "report.html", self.programs, window=self.window, pictures=pictures)
 
         page = [self.launcher, "report", result, "-o", pathlib.Path("report.html")]
         page += ["--programs", self.programs] if self.programs != self.launcher.parent else []
@@ -267,6 +268,10 @@ class Folder:
         return old is not None and old["of"] == identity and all(self.digest(name) == self.record["files"].get(name) != ""
                                                                 for name in old["makes"])
 
+    def has_made(self, step):
+        """Whether what it makes is there: a picture of what a result lacks is not."""
+        return bool(self.record["steps"].get(step.makes, {"makes": []})["makes"])
+
     def make(self, step):
         """Makes a step, if need be. Returns the exit code of its program."""
         identity = self.identity(step)
@@ -290,7 +295,7 @@ class Folder:
         if step.draw:
             load_plots()
             try:
-                step.draw(self.out)
+                step.draw(self)
             except NotWanted as error:
                 makes, said = [], f"{self.shown(step.makes)} is not made: {error}"
                 self.say(said)

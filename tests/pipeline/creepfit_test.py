@@ -167,7 +167,7 @@ class Creepfit(ChainTest):
         """K is 1.2; bounds of 0.8:0.9 do not contain it."""
         folder = self.chain.new_folder()
         done = self.chain.answer("creepfit", self.joints, "--measurements", self.readings(), "--fit",
-                                 "kelvin-stiffness=0.4:3,kelvin-viscosity=0.4:6,joint-stiffness=0.8:0.9", "--ensemble", "12", "-o", folder / "f.csv")
+                                 "kelvin-stiffness=0.4:3,kelvin-viscosity=0.4:6,joint-stiffness=0.8:0.9", "--ensemble", "8", "-o", folder / "f.csv")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("readings and bounds do not agree: the readings want joint-stiffness above", done.stderr)
         self.assertNotIn("In the scene", done.stdout)
