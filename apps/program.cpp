@@ -163,19 +163,29 @@ void complain(const std::string& program, std::string_view message)
     std::_Exit(code);
 }
 
+constexpr std::size_t enough_stack = std::size_t{1} << 20; // [bytes]
+
+// Uses its lowest address; pages between are taken when they are used. A function of its own: what calls it has not this frame.
+[[gnu::noinline]] void use_stack()
+{
+    volatile char room[enough_stack];
+    room[0] = 0;
+    asm volatile("" : : "r"(&room[0]) : "memory"); // a compiler keeps all of it
+}
+
 // Grows the stack now to what the work may need. Where address space is limited, a stack that cannot grow later ends in a crash.
 // A small stack is left as it is. Throws std::bad_alloc where there is no room for it.
 [[gnu::noinline]] void reserve_stack()
 {
-    constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
+    constexpr std::size_t page = 4096; // [bytes]
     rlimit limit{};
-    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * enough)
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * enough_stack)
         return;
-    void* const as_much = mmap(nullptr, enough + 64 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (as_much == MAP_FAILED || munmap(as_much, enough + 64 * page) != 0)
+    void* const as_much =
+        mmap(nullptr, enough_stack + 64 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (as_much == MAP_FAILED || munmap(as_much, enough_stack + 64 * page) != 0)
         throw std::bad_alloc();
-    [[maybe_unused]] volatile char room[enough];
-    room[0] = 0; // the lowest address; pages between are taken when they are used
+    use_stack();
 }
 
 // The stack of OpenMP's threads as the environment has it [bytes]; 0 is the default. In kilobytes, or with a unit.

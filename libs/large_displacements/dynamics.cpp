@@ -435,9 +435,10 @@ void Dynamics::step()
         find_time_step();
 }
 
-// Kinetic energy that rounding errors of positions may give or take in a step: by their impulses on all gridpoints, which
-// are independent of each other, from the stiffest springs and dashpots, and on a mass no larger than that of the
-// stiffest gridpoint [J/m]. No place is farther from the middle than high_.
+// Kinetic energy that rounding errors of positions may give or take in a step [J/m]. Each gridpoint has an impulse from springs
+// and dashpots, at most that of the stiffest one. The errors are independent, so their sum grows with the root of the number of
+// gridpoints. For each, stiffness squared over mass is at most the largest stiffness times the highest frequency squared. No place
+// is farther from the middle than high_.
 double Dynamics::energy_of_rounding() const
 {
     const double beta = settings_.stiffness_damping, half = now_.dt / (2 * safety);

@@ -236,9 +236,9 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines "
-         "Fisher's law describes the planes that a scanline meets which lies in the section, normal to the mean trace; the "
-         "bootstrap describes all planes of the set. For segments and discs both laws describe all joints in space. The section "
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. Of lines, Fisher's law describes the "
+         "planes that a scanline meets. This scanline lies in the section, normal to the mean trace. The bootstrap describes all "
+         "planes of the set. For segments and discs both laws describe all joints in space. The section "
          "cuts joints at a larger angle to it more often; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "

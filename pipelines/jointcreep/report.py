@@ -209,7 +209,7 @@ def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
     the section for pictures of states; None: as section-detail.png and blocks-detail.png have it. pictures: Paths, by name, of pictures of this
     result that `jointcreep run` has drawn; they are not drawn again."""
     import figure  # matplotlib takes long to load
-    from suited import detail
+    from suited import detail, magnified
     with h5py.File(source) as file:
         scene_text = file["/scene"][0].decode()
         scene = tomllib.loads(scene_text)
@@ -247,12 +247,10 @@ def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
         parts.append(shown("line", "lines.png", "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
     if failure:
-        parts.append(shown("state", "failure.png", "Moving blocks.", around_failure=True,
-                           magnify=1 if "large_displacements" in scene else 0))
+        parts.append(shown("state", "failure.png", "Moving blocks.", around_failure=True, magnify=magnified(scene)))
         parts += moving_blocks(source)
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
-        is_displaced = "large_displacements" in scene and field != "contacts"  # the rock is drawn where it is
-        parts.append(shown("state", f"last-{field}.png", caption, field=field, window=window, magnify=1 if is_displaced else 0))
+        parts.append(shown("state", f"last-{field}.png", caption, field=field, window=window, magnify=magnified(scene, field)))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),
@@ -471,7 +469,7 @@ def of_notes(path):
 def write(source, output, programs, pairs=None, window=None, others=(), notes=None, pictures=()):
     """Writes the page of a result file or of a study's folder, or one page of several: those in `others`, too. output: a Path, or "-":
     standard output. pairs: of the points of a result, as relative_displacements(). window: of its pictures, as of_run(). notes: a Path of
-    the text that comes first. pictures: of a result, as of_run()."""
+    the text that comes first. pictures: of `source`, as of_run()."""
     sources = [source, *others]
     for one in sources:
         check(one, pairs, window)
@@ -483,7 +481,7 @@ def write(source, output, programs, pairs=None, window=None, others=(), notes=No
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as name:
         folder = pathlib.Path(name)
         found = [of_study(one.resolve(), programs, folder) if one.is_dir() else
-                 of_run(one.resolve(), programs, folder, pairs, window, pictures) for one in sources]
+                 of_run(one.resolve(), programs, folder, pairs, window, pictures if one is source else ()) for one in sources]
     title, parts = found[0]
     if others:
         titles = [title for title, _ in found]

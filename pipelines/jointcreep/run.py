@@ -133,7 +133,7 @@ class Plan:
         return (reached if self.changes_between_stages() else reached[:-1]) + [("last", "last")]
 
     def pictures(self, failed=None):
-        from suited import detail, state_fields, suited
+        from suited import detail, magnified, state_fields, suited
         window = self.window or detail(self.scene)
         result = pathlib.Path(RESULT if failed is None else FAILED)
         network, joints = pathlib.Path("network.h5"), pathlib.Path("joints.h5")
@@ -154,15 +154,14 @@ class Plan:
             yield self.picture("line", result, "lines")
         for word, state in self.states(failed):
             for field in state_fields(self.scene):
-                has_moved = "large_displacements" in self.scene and field != "contacts"  # then the rock is drawn where it is
                 yield self.picture("state", result, f"{word}-{field}", state=state, field=field, window=window,
-                                   magnify=1 if has_moved else None)
+                                   magnify=magnified(self.scene, field) or None)
         if failed is not None:
             yield self.moving_blocks()
 
     def moving_blocks(self):
-        return self.picture("state", pathlib.Path(FAILED), "failure", around_failure=True,
-                            magnify=1 if "large_displacements" in self.scene else None)
+        from suited import magnified
+        return self.picture("state", pathlib.Path(FAILED), "failure", around_failure=True, magnify=magnified(self.scene) or None)
 
     def picture(self, name, source, picture, **options):
         """The step that draws a plot; options that are None are left out."""
@@ -194,7 +193,8 @@ class Plan:
 
         def write(folder):
             from . import report
-            pictures = {step.makes: folder.out / step.makes for step in steps if folder.has_made(step)}
+            pictures = {step.makes: folder.out / step.makes for step in steps
+                        if step.draw and result in step.command and folder.has_made(step)}
             report.write(folder.out / result, folder.out / "report.html", self.programs, window=self.window, pictures=pictures)
 
         page = [self.launcher, "report", result, "-o", pathlib.Path("report.html")]
@@ -240,8 +240,8 @@ class Folder:
         inputs = [[path.name if path in step.needs else "", self.digest(path)] for path in outside]
         inputs += [[str(path), self.digest(path)] for path in step.inputs() if not path.is_absolute()]
         if step.draw:
-            code = sorted([*PLOTS.glob("*.py"), *pathlib.Path(__file__).parent.glob("*.py")] if step.makes == "report.html" else
-                          PLOTS.glob("*.py"))
+            own = pathlib.Path(__file__).parent
+            code = sorted([*PLOTS.glob("*.py"), *(own.glob("*.py") if step.makes == "report.html" else [own / "plots.py"])])
             inputs.append(["plots", hashlib.sha256("".join(map(self.digest, code)).encode()).hexdigest()])
         words = [str(word) if not (isinstance(word, pathlib.Path) and word.is_absolute()) else "" for word in step.command]
         return {"command": words, "inputs": inputs}
@@ -269,7 +269,7 @@ class Folder:
                                                                 for name in old["makes"])
 
     def has_made(self, step):
-        """Whether what it makes is there: a picture of what a result lacks is not."""
+        """Whether the step has made its file: it makes no picture of what the result does not have."""
         return bool(self.record["steps"].get(step.makes, {"makes": []})["makes"])
 
     def make(self, step):

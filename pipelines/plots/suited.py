@@ -54,6 +54,11 @@ FUNCTIONS = {"exp": math.exp, "ln": math.log, "sqrt": math.sqrt, "abs": abs, "mi
              "tand": lambda angle: math.tan(math.radians(angle)), "atand": lambda value: math.degrees(math.atan(value))}
 
 
+def magnified(scene, field=""):
+    """How many times displacements are drawn: 1 with [large_displacements], where the rock is then, but not of contacts; else 0."""
+    return int("large_displacements" in scene and field != "contacts")
+
+
 def number(value, variables):
     """A number of a scene, or of a formula such as "2 * H / tand(dip)" with names of its table [variables]; None of anything else."""
     if isinstance(value, str):

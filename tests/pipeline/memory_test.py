@@ -34,6 +34,17 @@ class Memory(ChainTest):
         joints = self.chain.joints(self.chain.text("data/verification/punch/scene.toml"))
         self.sweep(joints, (*range(200, 300, 6), 400, 600))
 
+    def test_small_limits_at_the_start(self):
+        """A small stack is enough for small work. Where address space ends before the program has its stack, that is told."""
+        def codes(limit, sizes):
+            return [subprocess.run([self.chain.programs / "jointgen", "--version"], capture_output=True, timeout=LONGEST,
+                                   preexec_fn=lambda size=size: resource.setrlimit(limit, (size, size))).returncode for size in sizes]
+
+        self.assertEqual(codes(resource.RLIMIT_STACK, (MB // 2, MB, 2 * MB, 3 * MB)), [0] * 4)
+        found = codes(resource.RLIMIT_AS, range(10 * MB, 40 * MB, MB // 8))
+        self.assertEqual(found, sorted(found, key=[127, 1, 5, 0].index))  # 127 and 1: of the loader and of OpenMP, before the program
+        self.assertLessEqual({5, 0}, set(found))
+
     def sweep(self, joints, sizes, *options):
         output = joints.with_name("result.h5")
         self.assertEqual(self.run_within(joints, output, None, *options).returncode, 0)

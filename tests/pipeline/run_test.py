@@ -19,7 +19,7 @@ from matplotlib.collections import PolyCollection
 from chain import ChainTest, alive, changed, datasets, main
 from jointcreep import plots
 from jointcreep import run as of_scene
-from suited import state_fields, suited
+from suited import magnified, state_fields, suited
 
 ODD = "it's a `touch x` $(touch y) \"$z\" #%&"  # of a folder, and of a stage
 OF_SMALL = {"network.h5", "joints.h5", "result.h5", "section.png", "blocks.png", "rose.png", "distributions.png", "histories-x.png",
@@ -98,6 +98,13 @@ class Run(ChainTest):
         commands = [shlex.split(line) for line in done.stderr.splitlines() if " -o " in line]
         return {os.path.basename(words[words.index("-o") + 1]) for words in commands}
 
+    def assert_report_as_typed(self, result, *options):
+        """The report, which takes pictures from the folder, is the one that `jointcreep report` draws anew."""
+        page = self.folder / "typed.html"
+        done = self.chain.jointcreep("report", self.out / result, *options, "-o", page)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(page.read_bytes(), (self.out / "report.html").read_bytes())
+
     def names(self, folder=None):
         return {path.name for path in (folder or self.out).iterdir()}
 
@@ -119,7 +126,7 @@ class Run(ChainTest):
         script = "\n".join(lines).replace("out/", "typed/")
         subprocess.run(["sh", "-ec", script], cwd=self.folder, check=True, capture_output=True)
         for path in (self.folder / "typed").glob("*.*"):
-            if path.name not in ("checkpoint.h5", "run.lock"):
+            if path.name != "checkpoint.h5":
                 self.assertEqual(path.read_bytes(), (self.out / path.name).read_bytes(), path.name)
 
         # Nothing is made again, whatever the times of files and the folder that it is called from.
@@ -253,6 +260,7 @@ class Run(ChainTest):
         area = failed["/blocks/area"][failed["/failure/block"]]
         self.assertIn(f"area {area.sum():.4g} m2 in all: {area.sum():.4g} m3 for each metre along the strike", page)
         self.assertIn(f'<td class="number">{failed["/failure/block"][0]}</td><td class="number">{area[0]:.4g}</td>', page)
+        self.assert_report_as_typed("result.h5")
         os.rename(self.out / "result.failed.h5", self.folder / "away.h5")
         self.assertEqual(self.chain.jointcreep("report", self.out / "result.h5", "-o", self.folder / "r.html").returncode, 0)
         self.assertIn("What moves at failure is in result.failed.h5, which is not beside this result", (self.folder / "r.html").read_text())
@@ -274,6 +282,7 @@ class Run(ChainTest):
         self.assertIn(base64.b64encode((self.out / "blocks-detail.png").read_bytes()).decode(), report)
         self.assertIn(base64.b64encode((self.out / "section-detail.png").read_bytes()).decode(), report)
         self.assertIn(base64.b64encode((self.out / "last-stress.png").read_bytes()).decode(), report)
+        self.assert_report_as_typed("result.h5", "--window", "5,2.5,25,15")
         self.assertEqual(self.made("--window=5,2.5,25,15", "--", "--no-creep"), set())
         self.assertEqual(self.made("--window", "5", "2.5", "25", "15", "--", "--no-creep"), set())
         drawn_in_it = {"section-detail.png", "blocks-detail.png", "last-displacement.png", "last-stress.png", "last-contacts.png", "report.html"}
@@ -473,6 +482,8 @@ class Run(ChainTest):
             scene = tomllib.loads(self.chain.text(path))
             self.assertEqual(set(suited(scene)), wanted | set(always), path)
             self.assertEqual(len(state_fields(scene)), fields, path)
+            is_large = "toppling" in path
+            self.assertEqual([magnified(scene), magnified(scene, "stress"), magnified(scene, "contacts")], [is_large, is_large, False])
 
 
 if __name__ == "__main__":

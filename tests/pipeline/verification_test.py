@@ -160,8 +160,8 @@ class Verification(ChainTest):
         self.in_every_way(text, check)
 
     def test_events_keep_the_second_order(self):
-        """A wedge that slips, opens and closes: with 4 halvings of the step 100 times less error (256 without events). Dynamic relaxation,
-        which takes long for each step: with 3 halvings of the double step 30 times less (64)."""
+        """A wedge that slips, opens and closes: with 4 halvings of the step 100 times less error (256 if nothing slipped or opened). Dynamic
+        relaxation, which takes long for each step: with 3 halvings of the double step 30 times less (in place of 64)."""
         joints = self.chain.joints(self.scene("v-groove"))
         for engine in self.offer.engines:
             coarse, fine, less = (2, 0.25, 30) if engine == "relaxation" else (1, 1 / 16, 100)

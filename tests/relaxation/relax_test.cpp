@@ -153,19 +153,15 @@ TEST(relax, a_block_on_a_joint_that_stiffens)
         }
 }
 
-// A stack of 60 cubes under its weight, and then 1e-4 of the weight of all on its top, displacements counting from there; or 0.3 of the weight,
-// beside the displacements before. What is unbalanced
-// is small beside the forces there are long before the stack has gone down as far as it must,
-//   u = P ((i + 1) / K + y / E)       of the cube i, y up to its middle.
-// The estimate of the remaining displacement is near what is left, or above where damping lets the stack
-// swing.
-TEST_P(relax_with, a_small_load_on_a_tall_stack)
+constexpr Index n = 60;                                                 // cubes of a tall stack
+constexpr double tall_stack_stiffness = 5e9, tall_stack_modulus = 2e10; // [Pa/m], [Pa]
+
+// Cubes on each other, at rest under their weight. This takes long, so once for all tests.
+const Section& tall_stack()
 {
-    for (const bool starts_anew : {true, false}) {
-        const Index n = 60;
-        const double K = 5e9, E = 2e10;
+    static const Section at_rest = [] {
         Scene scene = section({{0, 0}, {1, 0}, {1, double(n)}, {0, double(n)}}, 0.01);
-        scene.rocks = {{"rock", 2700, E, 0, std::nullopt}};
+        scene.rocks = {{"rock", 2700, tall_stack_modulus, 0, std::nullopt}};
         scene.zone_size = 2;
         scene.gravity = 9.81;
         scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"}};
@@ -174,10 +170,26 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
             add_joint(joints, {0, double(i)}, {1, double(i)});
         for (Index i = 0; i < n; ++i)
             scene.points.push_back({"cube", {0.5, i + 0.5}, 0});
-        Section s = assembled(std::move(scene), joints, K, 2e9);
+        Section s = assembled(std::move(scene), joints, tall_stack_stiffness, 2e9);
         Equilibrium how = settings(Damping::adaptive);
         how.tolerance = 1e-11;
         relaxation::relax(s.assembly, how);
+        return s;
+    }();
+    return at_rest;
+}
+
+// A stack of 60 cubes under its weight, and then 1e-4 of the weight of all on its top, displacements counting from there; or 0.3 of the weight,
+// beside the displacements before. What is unbalanced
+// is small beside the forces there are long before the stack has gone down as far as it must,
+//   u = P ((i + 1) / K + y / E)       of the cube i, y up to its middle.
+// The estimate of the remaining displacement is near what is left, or above where damping lets the stack
+// swing.
+TEST_P(relax_with, a_small_load_on_a_tall_stack)
+{
+    const double K = tall_stack_stiffness, E = tall_stack_modulus;
+    for (const bool starts_anew : {true, false}) {
+        Section s = tall_stack();
         if (starts_anew)
             mechanics::start_from_here(s.assembly);
         const auto displacements = [&] {
@@ -190,7 +202,7 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
         for (std::size_t g = 0; g < s.assembly.position.size(); ++g)
             if (s.assembly.position[g].y() > n - 1e-6)
                 s.assembly.load[g].y() -= P / 2;
-        how = settings(GetParam().first, GetParam().second);
+        Equilibrium how = settings(GetParam().first, GetParam().second);
         how.tolerance = 1e-6;
         how.mass_damping = 70; // about critical
         const Convergence convergence = relaxation::relax(s.assembly, how);
@@ -214,7 +226,6 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
 // rest under it, that is pushed sideways at its top: slow ways to rest, on which local damping keeps the cubes trembling. None slides.
 TEST_P(relax_with, a_tall_stack_that_comes_to_rest_slowly_is_not_said_to_slide)
 {
-    const Index n = 60;
     for (const auto& [pushed, K] : {std::pair(false, 5e9), {false, 5e7}, {true, 5e9}}) {
         if (K < 1e9 && GetParam().first != Damping::mass)
             continue; // faster to rest
@@ -409,13 +420,13 @@ TEST(relax, a_block_that_swings_on_its_joint)
         std::vector<double> turns; // over the first amplitude, from rest
         double last = 0, before = 0;
         relaxation::relax(s.assembly, how, [&](double) {
-            double now = 0, n = 0; // the ground's gridpoints do not move
+            double now = 0, moving = 0; // the ground's gridpoints do not move
             for (std::size_t g = 0; g < s.assembly.displacement.size(); ++g)
                 if (s.assembly.is_free[g].y() > 0) {
                     now += s.assembly.displacement[g].y();
-                    ++n;
+                    ++moving;
                 }
-            now /= n;
+            now /= moving;
             if ((now - last) * (last - before) < 0)
                 turns.push_back(last / rest - 1);
             before = last;
