@@ -164,8 +164,9 @@ std::vector<Field> fields_of(States& states)
          "Opening by slip since the in-situ equilibrium. In a dynamic analysis: the mean of the faces that "
          "meet at the contact."},
         {"/states/bond_broken", &states.bond_broken, {"state", "contact"}, "1", between(0, 1),
-         "1 once the contact has lost its bonds (cohesion and tensile strength), by opening, or by slip if it has a residual "
-         "strength. In a dynamic analysis: on more than half of the faces that meet there."},
+         "1 once the bonds of the contact are broken, by opening, or by slip if it has a residual strength. From then on it has no "
+         "tensile strength, and the residual cohesion (0 if there is none). In a dynamic analysis: on more than half of the "
+         "faces that meet there."},
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
          "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),

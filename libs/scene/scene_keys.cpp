@@ -236,10 +236,10 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. Of lines, Fisher's law describes the "
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, Fisher's law describes the "
          "planes that a scanline meets. This scanline lies in the section, normal to the mean trace. The bootstrap describes all "
-         "planes of the set. For segments and discs both laws describe all joints in space. The section "
-         "cuts joints at a larger angle to it more often; jointgen takes this into account."},
+         "planes of the set. For segments and discs both laws describe all joints in space. The "
+         "larger the angle between a joint and the section, the more often the section cuts it; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
                 "with replacement."),
@@ -787,7 +787,7 @@ Table<Scene> zones()
                  "quadratic, with the implicit engine and without [large_displacements], if a rock has the law "
                  "\"Mohr-Coulomb\", or if there is neither a [[joint_set]] nor a [[mapped]]; otherwise constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes,
-                "Longest zone side; with fine_m inside that polygon."),
+                "Longest zone side. If fine_m is given, this size applies only inside the polygon fine_m."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones have the size size_m; outside they are larger. Without it they have this "
                  "size everywhere.")
@@ -831,16 +831,17 @@ Table<Equilibrium> equilibrium()
         {"equilibrium", once, optional, "How equilibrium is found."},
         {choice(
              "engine", &E::engine, engine_words(),
-             "Dynamic relaxation, or the implicit engine, which solves equations for the equilibrium. auto: the implicit engine, "
-             "and dynamic relaxation for each equilibrium that it does not find; with real masses or a step history only "
-             "dynamic relaxation.")
+             "Dynamic relaxation, or the implicit engine, which solves equations for the equilibrium. auto: the implicit engine; "
+             "then dynamic relaxation, if it finds neither an equilibrium nor moving blocks. With real masses, or with the "
+             "option --step-history of demsolve: only dynamic relaxation.")
              .former_word(std::string(former_engine_word), std::string(engine_word_for_it))
              .or_else(std::string("auto")),
          number(
              "tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
              "Limit of the unbalanced force ratio and of the change of contact forces. Dynamic relaxation also estimates the "
-             "displacement that remains. It divides this by the displacement since the search began, or by a tenth of the whole "
-             "displacement if that is larger. The quotient must be at most 1000 times the tolerance, and at most 0.1.")
+             "displacement that remains. The estimate is divided by the displacement since the search began, or by a tenth of the "
+             "whole displacement if that is larger. The result must be at most 1000 times the tolerance, and at most 0.1, unless "
+             "only rounding errors remain.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")
