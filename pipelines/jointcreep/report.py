@@ -206,8 +206,8 @@ def factor_of_safety(source, folder):
 
 def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
     """Title and parts of the page of a result file. pairs: of points, as relative_displacements(). window: x0, y0, x1, y1 [m], a part of
-    the section for pictures of states; None: as section-detail.png and blocks-detail.png have it. pictures: Paths, by name, of pictures of this
-    result that `jointcreep run` has drawn; they are not drawn again."""
+    the section for pictures of states; None: as section-detail.png and blocks-detail.png have it. pictures: Paths, by name, of pictures
+    that `jointcreep run` has drawn of this file; they are not drawn again. (Those of its network have no title with strengths.)"""
     import figure  # matplotlib takes long to load
     from suited import detail, magnified
     with h5py.File(source) as file:
@@ -231,10 +231,10 @@ def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
     def shown(plot, made, caption, **options):
         return picture(pictures[made], caption) if made in pictures else drawn(plot, source, folder, caption, **options)
 
-    parts += ["<h2>Section and network</h2>", shown("section", "section.png", "The section, its joints, stages and points.")]
-    parts += [shown("section", "section-detail.png", "Its stages and points.", window=window)] if window else []
-    parts += [shown("blocks", "blocks.png", "Blocks by size.")]
-    parts += [shown("blocks", "blocks-detail.png", "Those around the excavation, with a scale of their own.", window=window)] if window else []
+    parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
+    parts += [drawn("section", source, folder, "Its stages and points.", window=window)] if window else []
+    parts += [drawn("blocks", source, folder, "Blocks by size.")]
+    parts += [drawn("blocks", source, folder, "Those around the excavation, with a scale of their own.", window=window)] if window else []
     parts += ["<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):

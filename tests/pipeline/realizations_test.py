@@ -326,8 +326,8 @@ class Slope(Realizations):
         super().setUp()
 
     def test_same_statistics(self):
-        """Of runs one at a time, and of two at a time that are killed and go on."""
         one = self.made(self.folder / "one")
+        self.assert_same(one, self.made(self.folder / "two", None, "-j2"))
         out = self.folder / "out"
         self.stopped(out, self.programs(), lambda pid: os.kill(pid, signal.SIGKILL), 1)
         self.stopped(out, self.programs(hangs(2)), lambda pid: os.killpg(pid, signal.SIGINT), 2)

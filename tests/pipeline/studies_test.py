@@ -1245,19 +1245,17 @@ class TwoLevels(Studies):
         self.assertEqual(list(answers.values_of(study, rows, 0)[1]), [8])
 
     def test_stop_rule(self):
-        self.enterContext(unittest.mock.patch.object(plan, "BATCH", 35))
-        text = LEVELS.format(fine=40).replace("coarse_per_fine = 3", "coarse_per_fine = 2").replace("--no-creep", "--creep-step=5")
-        text += '[stop]\nof = "floor"\nrelative_half_width = 0.2\n'
+        text = LEVELS.format(fine=40).replace("--no-creep", "--creep-step=5") + '[stop]\nof = "floor"\nrelative_half_width = 0.2\n'
         out = self.made(self.written(text), self.folder / "out", "-j2")
         with open(out / "answers.csv", encoding="utf-8") as file:
             mean = next(row for row in csv.DictReader(file) if row["statistic"] == "mean")
         self.assertLess((float(mean["high"]) - float(mean["low"])) / 2, 0.2 * float(mean["value"]))
-        self.assertEqual((len(rows_of(out)), mean["runs"]), (35, "11"))  # eleven blocks of three, and two runs
+        self.assertEqual((len(rows_of(out)), mean["runs"]), (50, "12"))  # twelve blocks of four, and two runs
         with open(out / "convergence.csv", encoding="utf-8") as file:
-            self.assertEqual([row["runs"] for row in csv.DictReader(file) if row["statistic"] == "mean"], ["10", "11"])
+            self.assertEqual([row["runs"] for row in csv.DictReader(file) if row["statistic"] == "mean"], ["10", "11", "12"])
         study = study_file.read(self.folder / "study.toml")
-        rows = [{"run": run, "values": [5 + 1e-6 * (run * 7 % 5)]} for run in range(30)]
-        self.assertFalse(answers.enough(study, rows[:29]))  # nine blocks, whose mean is known well enough by chance
+        rows = [{"run": run, "values": [5 + 1e-6 * (run * 7 % 5)]} for run in range(40)]
+        self.assertFalse(answers.enough(study, rows[:39]))  # nine blocks, whose mean is known well enough by chance
         self.assertTrue(answers.enough(study, rows))
 
     def test_messages(self):

@@ -4,13 +4,11 @@ import contextlib
 import importlib.machinery
 import importlib.util
 import io
-import os
 import pathlib
 import random
 import re
 import shutil
 import sys
-import tempfile
 import types
 
 import h5py
@@ -22,7 +20,7 @@ import dilation_test
 import joint_laws_test
 import residual_test
 import yield_test
-from chain import ChainTest, changed, main
+from chain import ChainTest, changed, in_a_copy, main
 from small_scene import held, joint, material, scene
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines" / "reliability"))
@@ -489,22 +487,6 @@ class Verify(ChainTest):
             self.assertNotEqual(new, text)
             self.refused(scene_is(new), "/scene" if "border" not in new else "/mesh/side_boundary")
 
-    def answered(self, path):
-        """Exit code of the program, and all that it says. It reads in a process of its own, which a damaged file can end."""
-        kept = os.dup(1), os.dup(2)
-        sys.stdout.flush()
-        with tempfile.TemporaryFile("w+", encoding="utf-8") as said:
-            try:
-                for number in (1, 2):
-                    os.dup2(said.fileno(), number)
-                code = self.script.main([str(path)])
-            finally:
-                for number, own in zip((1, 2), kept):
-                    os.dup2(own, number)
-                    os.close(own)
-            said.seek(0)
-            return code, said.read()
-
     def test_damaged_files(self):
         """As for the programs: the same answer, or a refusal that names the file."""
         good = self.result("residual")
@@ -514,7 +496,8 @@ class Verify(ChainTest):
                 copy = self.chain.new_folder() / "copy.h5"
                 shutil.copyfile(good, copy)
                 damage(copy, random.Random(case))
-                code, said = self.answered(copy)
+                done = in_a_copy(self.chain.programs / "jointverify", copy)
+                code, said = done.returncode, done.stdout + done.stderr
                 self.assertIn(code, (2, 4) if damage in MUST_BE_REFUSED else (0, 2, 3, 4), said)
                 if code in (2, 4):
                     self.assertIn("jointverify: " + str(copy), said)
