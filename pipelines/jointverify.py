@@ -16,7 +16,7 @@ Creep of joints is verified where each creep step has a state: demsolve --states
 
 What is allowed:
   equilibrium    the run's tolerance of the unbalanced force ratio
-  energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
+  energies       1e-8 of the sum of their magnitudes; in a dynamic analysis the scene's energy_tolerance, or 1 percent
   creep          1e-9 of the terms that are added
   stresses at large displacements
                  Hooke's, of 100 times the strain between the first two states, times the gradient of displacements:
