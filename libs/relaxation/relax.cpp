@@ -154,6 +154,8 @@ public:
                                 : 0.0;
                 starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
                 last_energy = starts_from_rest ? 0.0 : sums.energy;
+                if (starts_from_rest)
+                    work += go_back_to_peak_in_team();
                 find_forces_in_team(a_, i + 1 < steps);
             }
 #pragma omp barrier
@@ -456,6 +458,39 @@ private:
             }
             sums_[k] = {energy.sum(), answer.sum(), work.sum() / 2 * dt_};
         }
+    }
+
+    // Replaces the step, in which the kinetic energy has decreased, by half of the step before it, backwards: to the
+    // place of the peak (Barnes 1999, Int. J. Space Structures 14, 89). The next step starts from rest there. Any single
+    // vibration then has at most half its amplitude. Without this, gridpoints stop up to two steps after the peak, and
+    // a vibration with a period of six to eight steps would stop at the other end of its path, and go on for ever.
+    // Returns the change of the work [J/m].
+    double go_back_to_peak_in_team()
+    {
+        const auto n = static_cast<Index>(velocity_.size());
+        const auto n_chunks = static_cast<Index>(sums_.size());
+#pragma omp barrier // all have read the sums of the step
+#pragma omp for schedule(static)
+        for (Index k = 0; k < n_chunks; ++k) {
+            double work = 0;
+            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+                const Vector2d force = free_part(a_, g, a_.force[g]);
+                const Vector2d last = velocity_[g] - dt_ * inverse_mass_[g] * force; // in the step before
+                const Vector2d change = -last / 2 - velocity_[g];
+                work += force.dot(change);
+                velocity_[g] += change;
+                a_.displacement[g] += dt_ * change;
+            }
+            sums_[k].work = work / 2 * dt_;
+        }
+        if (has_any(stiffening_)) {
+#pragma omp single
+            remember_before_step();
+        }
+        double work = 0;
+        for (const Sums& some : sums_)
+            work += some.work;
+        return work;
     }
 
     // Each step counts half of its displacement under the forces at its start and half under those at its end, which
