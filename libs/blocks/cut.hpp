@@ -23,7 +23,8 @@ enum class Subdivision { own, cgal };
 //    line as rock bridge, by scene.cutting.dangling_ends.
 //  - Inside the section's holes there are no blocks.
 //  - Blocks are checked (blocks/check.hpp), and each joint's length is accounted for.
-//  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.
+//  - An edge on several joints belongs to the one with the largest joint fraction, then to the single
+//    joint that is last in the scene, then to the first.
 //  - Joint edges have the direction of their joint; boundary edges have the rock on their left.
 //
 // Throws input_error where there are more crossings than can be found, where a boundary condition does not lie on

@@ -761,7 +761,7 @@ Table<CreepSettings> creep()
          number(
              "first_step_days", &CreepSettings::first_step, days, step,
              "First step tried after the start, and after each stage and date of a load history; with tolerance_m.")
-             .optional("0.1 of the shortest retardation time"),
+             .optional("0.1 of the shortest relaxation time"),
          number("shortest_step_days", &CreepSettings::shortest_step, days, step,
                 "The tolerance makes no step shorter than this; with tolerance_m.")
              .optional(),

@@ -49,6 +49,7 @@ def with_equilibrium(text, damping, masses):
                  else 'engine = "implicit"\n')
     if damping == "mass":
         settings += f"mass_damping_per_s = {MASS_DAMPING}\n"
+    text = text.replace("\n[zones]\n", '\n[zones]\nkind = "constant strain"\n')  # by default only for dynamic relaxation
     return f"{cases.with_default_equilibrium(text)}\n[equilibrium]\n{settings}"
 
 

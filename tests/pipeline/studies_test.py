@@ -1110,12 +1110,12 @@ values = [1, 2, 6]
 
         # Runs behind one that has not ended do not count; summary and report say which one that is.
         slow = self.programs('case "$PWD" in */late/work/000001*) exec sleep 60 ;; esac', "jointgen")
-        done = self.study(self.written(text + "[stop]\nhours = 4e-3\n"), self.folder / "late", "-j2", programs=slow)
+        done = self.study(self.written(text + "[stop]\nhours = 1.5e-3\n"), self.folder / "late", "-j2", programs=slow)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"\nruns +1 of 30, ended after the 0.004 hours of the budget; \d+ more, behind run 1, which has not ended")
+        self.assertRegex(done.stdout, r"\nruns +1 of 30, ended after the 0.0015 hours of the budget; \d+ more, behind run 1, which has not ended")
         done = self.chain.jointcreep("report", self.folder / "late", "-o", self.folder / "page.html")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("<td>ended</td><td>after the 0.004 hours of the budget; ", (self.folder / "page.html").read_text())
+        self.assertIn("<td>ended</td><td>after the 0.0015 hours of the budget; ", (self.folder / "page.html").read_text())
 
     def test_axes_of_parameters(self):
         """Logarithmic for a parameter that varies by more than a factor of eight."""
