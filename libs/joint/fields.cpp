@@ -82,7 +82,7 @@ std::vector<Field> fields_of(SetAverages& sets)
          "Normal stiffness of the equivalent joints."},
         {"/sets/shear_stiffness", &sets.shear_stiffness, set, "Pa/m", natural, "Their shear stiffness."},
         {"/sets/limited_length", &sets.limited_length, set, "m", natural,
-         "Length of edges whose stiffness was limited to ten times that of a zone."},
+         "Length of edges whose stiffness was limited: to the joint's own, or ten times that of a zone if that is more."},
     };
     // clang-format on
 }
