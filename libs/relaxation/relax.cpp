@@ -127,7 +127,8 @@ public:
     // step: when all gridpoints have moved, and when all zones and contacts have been pulled.
     void move(Index steps)
     {
-        if (has_any(stiffening_))
+        const bool may_stiffen = has_any(stiffening_); // asked here: a thread may replace it below
+        if (may_stiffen)
             remember_before_step();
 #pragma omp parallel num_threads(a_.threads) if (a_.threads > 1)
         {
@@ -137,7 +138,7 @@ public:
             bool starts_from_rest = starts_from_rest_;
             for (Index i = 0; i < steps; ++i) {
                 step_in_team(alpha, starts_from_rest);
-                while (stiffens_too_far_in_team())
+                while (may_stiffen && stiffens_too_far_in_team())
                     step_in_team(alpha, starts_from_rest);
 #pragma omp master
                 ++steps_since_;
@@ -155,7 +156,7 @@ public:
                 starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
                 last_energy = starts_from_rest ? 0.0 : sums.energy;
                 if (starts_from_rest)
-                    work += go_back_to_peak_in_team();
+                    work += go_back_to_peak_in_team(may_stiffen);
                 find_forces_in_team(a_, i + 1 < steps);
             }
 #pragma omp barrier
@@ -356,8 +357,6 @@ private:
     // forces follow, and takes masses or a length for that stiffness.
     bool stiffens_too_far_in_team()
     {
-        if (!has_any(stiffening_))
-            return false;
 #pragma omp single
         {
             undoes_step_ = are_beyond(a_, stiffening_);
@@ -461,11 +460,12 @@ private:
     }
 
     // Replaces the step, in which the kinetic energy has decreased, by half of the step before it, backwards: to the
-    // place of the peak (Barnes 1999, Int. J. Space Structures 14, 89). The next step starts from rest there. Any single
-    // vibration then has at most half its amplitude. Without this, gridpoints stop up to two steps after the peak, and
-    // a vibration with a period of six to eight steps would stop at the other end of its path, and go on for ever.
+    // place of the peak (Barnes 1999, Int. J. Space Structures 14, 89). The next step starts from rest there. In linear
+    // rock every vibration keeps at most cos(p / 2) of its amplitude, one alone at most sin(p) / 2, with the phase p of a
+    // step. Without this, gridpoints would stop one or two steps after the peak: vibrations with periods near six or
+    // eight steps would stop at the other end of their path, with their whole amplitude.
     // Returns the change of the work [J/m].
-    double go_back_to_peak_in_team()
+    double go_back_to_peak_in_team(bool may_stiffen)
     {
         const auto n = static_cast<Index>(velocity_.size());
         const auto n_chunks = static_cast<Index>(sums_.size());
@@ -483,7 +483,7 @@ private:
             }
             sums_[k].work = work / 2 * dt_;
         }
-        if (has_any(stiffening_)) {
+        if (may_stiffen) {
 #pragma omp single
             remember_before_step();
         }

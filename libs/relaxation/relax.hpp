@@ -7,7 +7,8 @@
 // the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
 //   adaptive  alpha = 2 w, critical for the lowest frequency w that the present movement shows (Rayleigh
 //             quotient)
-//   kinetic   none, but all gridpoints are stopped whenever the kinetic energy has passed a peak (Cundall 1976)
+//   kinetic   none, but whenever the kinetic energy has passed a peak (Cundall 1976), all gridpoints go back to their
+//             places at the peak, and start from rest there (Barnes 1999)
 //   local     a fraction of the unbalanced force, against the velocity (Cundall 1987)
 //   combined  half of that against the velocity, half along the change of force: it also damps vibration
 //             about a steady movement

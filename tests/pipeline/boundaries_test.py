@@ -121,10 +121,9 @@ class Rollers(OfBoundaries):
                               {"from_m": at(SIDE, 0), "to_m": at(SIDE, SIDE), "traction_MPa": at(-1, 0), **LOADED}]
                 data = self.solved(scene(square(at), [], boundaries, [], gravity=0, zone=2.5, modulus=MODULUS / 1e9,
                                          poisson=POISSON, density=DENSITY,
-                                         more=f'[equilibrium]\nengine = "relaxation"\ndamping = "{damping}"\n'))
+                                         more=f'[equilibrium]\nengine = "relaxation"\ndamping = "{damping}"\n' +
+                                         "most_steps = 1000\n" * (damping == "kinetic")))
                 self.assert_field(data, at, lambda x, y: (strain[0] * x, strain[1] * y), [-1e6, 0, 0], 1e-9)
-                if damping == "kinetic":
-                    self.assertLess(data["/equilibria/steps"].max(), 1000)
 
     def test_block_on_an_inclined_base(self):
         """It rests on rollers under its base and at its lower end. With nu = 0, x up the base and the slope b:

@@ -213,25 +213,29 @@ TEST(invariance, other_units)
 // On the way already.
 TEST(invariance, the_same_bits_for_any_number_of_threads)
 {
-    const auto after_100_steps = [](int threads) {
+    const auto after_100_steps = [](int threads, Damping damping) {
         Assembly rock = mechanics::assemble(plate().scene, plate().network, plate().equivalent, plate().mesh);
         for (std::size_t g = 0; g < rock.load.size(); ++g)
             rock.load[g] = weight;
         rock.threads = threads;
         Equilibrium impatient = settings;
         impatient.most_steps = 100;
+        impatient.damping = damping;
         EXPECT_THROW(relaxation::relax(rock, impatient), equilibrium_error);
         return rock;
     };
-    const Assembly alone = after_100_steps(1);
-    EXPECT_GT(farthest(alone), 0);
-    for (const int threads : {2, 3}) {
-        const Assembly rock = after_100_steps(threads);
-        EXPECT_EQ(rock.displacement, alone.displacement);
-        EXPECT_EQ(rock.force, alone.force);
-        EXPECT_EQ(rock.zones.stress, alone.zones.stress);
-        EXPECT_EQ(rock.contacts.traction, alone.contacts.traction);
-        EXPECT_EQ(balance_of(rock).mean, balance_of(alone).mean);
+    for (const Damping damping : {Damping::adaptive, Damping::kinetic, Damping::local}) {
+        SCOPED_TRACE(static_cast<int>(damping));
+        const Assembly alone = after_100_steps(1, damping);
+        EXPECT_GT(farthest(alone), 0);
+        for (const int threads : {2, 3}) {
+            const Assembly rock = after_100_steps(threads, damping);
+            EXPECT_EQ(rock.displacement, alone.displacement);
+            EXPECT_EQ(rock.force, alone.force);
+            EXPECT_EQ(rock.zones.stress, alone.zones.stress);
+            EXPECT_EQ(rock.contacts.traction, alone.contacts.traction);
+            EXPECT_EQ(balance_of(rock).mean, balance_of(alone).mean);
+        }
     }
 }
 
