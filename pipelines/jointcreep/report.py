@@ -205,7 +205,7 @@ def factor_of_safety(source, folder):
 
 
 def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
-    """Title and parts of the page of a result file. pairs: of points, as relative_displacements(). window: x0, y0, x1, y1 [m], a part of
+    """Title and parts of the page of a result file. pairs: of points, in words, as pairs_of() reads them. window: x0, y0, x1, y1 [m], a part of
     the section for pictures of states; None: as section-detail.png and blocks-detail.png have it. pictures: Paths, by name, of pictures
     that `jointcreep run` has drawn of this file; they are not drawn again. (Those of its network have no title with strengths.)"""
     import figure  # matplotlib takes long to load
@@ -218,6 +218,9 @@ def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
         failure = failure_in_words(file) if "/failure" in file else ""
         factor = figure.strength_factor_of(file)
         points = texts(file, "/history/point")
+        if pairs and not points:
+            raise NotWanted(f"--pairs: {source.name} has no monitoring points")
+        wanted = pairs_of(pairs, points) if pairs else None
         displacements = by_stage(file) if points else []
         numbers = [("blocks", len(file["/blocks/area"])), ("zones", len(file["/mesh/zone_block"])),
                    ("contacts", len(file["/mesh/contact_edge"])), ("equilibria", len(file["/equilibria/steps"])),
@@ -240,9 +243,7 @@ def of_run(source, programs, folder, pairs=None, window=None, pictures=()):
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
             parts.append(shown("histories", f"histories-{component}.png", caption, component=component))
         parts += displacements
-        parts += relative_displacements(source, folder, pairs)
-    elif pairs:
-        raise NotWanted(f"--pairs: {source.name} has no monitoring points")
+        parts += relative_displacements(source, folder, wanted)
     if "monitoring_line" in scene:
         parts.append(shown("line", "lines.png", "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
@@ -277,8 +278,7 @@ def pairs_of(text, points):
 
 def relative_displacements(source, folder, wanted):
     """Parts of the page about pairs of monitoring points: closure, and displacement of the first relative to the second, by stage. wanted:
-    pairs in words, as pairs_of() reads them; None: pairs of all points that are not on monitoring lines, those that move most against each
-    other."""
+    pairs of names; None: pairs of all points that are not on monitoring lines, those that move most against each other."""
     import figure
     from plot_histories import of_no_line
     found = {}
@@ -286,7 +286,7 @@ def relative_displacements(source, folder, wanted):
         history = reading.history_of(file)
         place, first_row = dict(zip(history.point, history.position)), dict(zip(history.point, history.first_reading_row))
         names = [history.point[at] for at in of_no_line(file, history.point)]
-        pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2))
+        pairs = wanted or list(itertools.combinations(names, 2))
         has_readings = any(first_row[name] > 0 for pair in pairs for name in pair)
         for one, other in pairs:
             relative, closure = 1e3 * history.relative(one, other), 1e3 * history.closure(one, other)
@@ -468,7 +468,7 @@ def of_notes(path):
 
 def write(source, output, programs, pairs=None, window=None, others=(), notes=None, pictures=()):
     """Writes the page of a result file or of a study's folder, or one page of several: those in `others`, too. output: a Path, or "-":
-    standard output. pairs: of the points of a result, as relative_displacements(). window: of its pictures, as of_run(). notes: a Path of
+    standard output. pairs: of the points of a result, in words, as pairs_of() reads them. window: of its pictures, as of_run(). notes: a Path of
     the text that comes first. pictures: of `source`, as of_run()."""
     sources = [source, *others]
     for one in sources:
