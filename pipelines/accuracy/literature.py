@@ -536,9 +536,9 @@ def wave(programs):
             zone),
         Row("P-wave in a bar", "speed of the rock behind a step of 1 MPa", "m/s", pressure / impedance, lines[0][0],
             1e-3, zone),
-        Row(name, "displacement behind the joint, 19 ms long: largest difference, over the last one", "1", 0,
+        Row(name, "displacement behind the joint, during 19 ms: largest difference over displacement at the end", "1", 0,
             abs(with_joint[1] - behind).max() / behind[-1], 2e-3,
-            "the joint passes the front on over 4 m, zones are 0.25 m: (0.25 / 4)^2 / 2", 1)]
+            "the joint spreads the wave front over 4 m, zones are 0.25 m: (0.25 / 4)^2 / 2", 1)]
     for share in 0.5, 1, 2:
         rate = share / lag
         came, went, back = (abs(transform(time, u, rate)) for u in

@@ -201,6 +201,7 @@ def table(runs):
 def seconds_for(error, runs):
     """Time of a kind for an error: between two runs along a line in the logarithms. (seconds, what it is)."""
     runs = sorted(runs, key=lambda run: run.seconds)
+    runs = [run for i, run in enumerate(runs) if all(abs(run.error) < abs(faster.error) for faster in runs[:i])]
     good = [i for i, run in enumerate(runs) if abs(run.error) <= error]
     if not good:
         return runs[-1].seconds, "above "

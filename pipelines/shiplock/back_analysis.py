@@ -28,7 +28,8 @@ import study
 from jointcreep import files
 
 MADE = {"joint-stiffness": 1.2, "kelvin-stiffness": 0.7, "kelvin-viscosity": 0.7}  # as creepfit's factors
-WORDS = {"joint-stiffness": "on K, with E and eta", "kelvin-stiffness": "on E", "kelvin-viscosity": "on eta"}
+WORDS = {"joint-stiffness": "on K, E and eta together", "kelvin-stiffness": "on E, in addition",
+         "kelvin-viscosity": "on eta, in addition"}
 SHORT = {"joint-stiffness": "K", "kelvin-stiffness": "E", "kelvin-viscosity": "eta"}
 SIGMA = 1.0  # of a reading [mm]
 

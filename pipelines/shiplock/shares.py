@@ -486,16 +486,16 @@ def main():
     own, own_errors = straight(pairs, targets), errors_of(lambda which: straight(pairs[which], targets), len(rows))
     lack = lack_of_fit(rows, pairs)
 
-    names = [(one.name, range_of(one)) for one in INPUTS.values()] + [("network", "two for each set")]
+    names = [(one.name, range_of(one)) for one in INPUTS.values()] + [("network", "two for each set of values")]
     told = ridge(rows, pairs, fit, targets, arguments.output / "ridge.png")
     number, failed = len(runs["run"]), int((runs["exit code"] != 0).sum())
-    more = [" x ".join(names[i][0] for i in (term if term[0] != term[1] else term[:1])) + (" (square)" if term[0] == term[1] else "")
-            for term in fit.terms if len(term) == 2]
+    factor = [f"({name.removesuffix(', times')})" for name, _ in names]
+    more = [f"{factor[i]}²" if i == j else f"{factor[i]} · {factor[j]}" for i, j in (term for term in fit.terms if len(term) == 2)]
     facts = [
-        f"{number} runs, two networks for each of {number // 2} sets; {failed} without equilibrium; {len(rows)} sets are used.",
+        f"{number} runs, two networks for each of {number // 2} sets of values; {failed} without equilibrium; {len(rows)} sets are used.",
         "Mean and standard deviation: " + "; ".join(
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
-        "The network's share in all from the runs alone: " + ", ".join(
+        "The network's total share (*in all*), computed from the differences of the pairs of runs without the polynomial: " + ", ".join(
             f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
         f"Lack of fit, of the variance of the logarithm: {lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
         "Squares and products in the polynomial: " + ("; ".join(more) or "none") + ".",

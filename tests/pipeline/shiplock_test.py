@@ -514,7 +514,7 @@ class Shiplock(ChainTest):
         several = [row("joint-stiffness", "1.2", "1", "1.4"), row("kelvin-viscosity", "", "", "")]
         lines = back_analysis.sites_markdown({4: (one, several)}, [0, 2]).splitlines()
         self.assertEqual(lines[0].split(" | ")[3:], ["found with network 0", "found with networks 0, 2 |"])
-        self.assertEqual(lines[2:], ["| 4 | on K, with E and eta | 1.2 | 1.25 (1.10 to 1.30) | 1.20 (1.00 to 1.40) |",
+        self.assertEqual(lines[2:], ["| 4 | on K, E and eta together | 1.2 | 1.25 (1.10 to 1.30) | 1.20 (1.00 to 1.40) |",
                                      "| 4 | on eta | 0.7 | 9.00 (8.00 to 10.00), true factor outside | not resolved |"])
 
     def test_table_of_the_back_analysis(self):
