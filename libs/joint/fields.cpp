@@ -82,7 +82,8 @@ std::vector<Field> fields_of(SetAverages& sets)
          "Normal stiffness of the equivalent joints."},
         {"/sets/shear_stiffness", &sets.shear_stiffness, set, "Pa/m", natural, "Their shear stiffness."},
         {"/sets/limited_length", &sets.limited_length, set, "m", natural,
-         "Length of edges whose stiffness was limited: to the joint's own, or ten times that of a zone if that is more."},
+         "Length of edges whose stiffness is at its upper limit. The limit is the larger one of the joint's own stiffness and ten times "
+         "the stiffness of the smallest zone."},
     };
     // clang-format on
 }
@@ -331,9 +332,9 @@ fields::ForceFields fields_in_files()
             {"moving_contact", "two faces of blocks that touch at a recorded moment of a dynamic analysis"},
             {"direction", "the normal or the shear of a contact that creeps"},
             {"direction_unit", "a Kelvin unit or dashpot of a direction"},
-            {"face", "a side of a zone with no rock before it, or of the ground"},
+            {"face", "a side of a zone at the ground, or with no rock of the same block before it"},
             {"pair", "two faces that may touch"},
-            {"pair_unit", "a Kelvin unit or dashpot of such a pair: of the normal at both ends, of shear"},
+            {"pair_unit", "a Kelvin unit or dashpot of such a pair. Normal direction: one at each end of the face; shear: one"},
         },
         .equivalent_joints = fields_of,
         .invariants_of_equivalent_joints = invariants_of,

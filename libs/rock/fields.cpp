@@ -31,7 +31,7 @@ std::vector<Field> fields_of(States& states)
     // clang-format off
     return {
         {"/states/stress", &states.stress, {"state", "zone"}, "Pa", any(),
-         "Stress {xx, yy, xy}, tension positive; of a quadratic zone, as all below, the mean over its stress points."},
+         "Stress {xx, yy, xy}, tension positive. Of a quadratic zone the mean over its stress points, as in all datasets below with the dimension zone."},
         {"/states/point_stress", &states.point_stress, {"state", "quadratic_point"}, "Pa", any(),
          "Stress at the stress points of quadratic zones, three per zone: point i has the share 2/3 of "
          "corner i, 1/6 of the others."},
@@ -63,7 +63,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/initial_stress", &checkpoint.initial_stress, zone, "Pa", any(),
          "Stress {xx, yy, xy} at zero displacement, less 2 G times the creep strain."},
         {"/checkpoint/stiffness", &checkpoint.stiffness, zone, "Pa", at_least(0),
-         "C11, C12 and C33 of the rock, with the rounding errors of creep steps."},
+         "C11, C12 and C33 of the rock. Creep steps change and restore them, with rounding errors; so they are kept."},
         {"/checkpoint/plastic_strain", &checkpoint.plastic_strain, yields, "1", any(),
          "Plastic strain {xx, yy, zz, 2 xy} since the in-situ equilibrium, extension positive."},
         {"/checkpoint/stress_zz", &checkpoint.stress_zz, yields, "Pa", any(), "Stress across the section."},
@@ -88,7 +88,7 @@ std::vector<Field> fields_of(DynamicsState& state)
         {"/dynamics_state/strain", &state.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
         {"/dynamics_state/plastic_strain", &state.plastic_strain, yields, "1", any(),
          "Of it, plastic strain {xx, yy, zz, 2 xy}, extension positive."},
-        {"/dynamics_state/initial_zz", &state.initial_zz, yields, "Pa", any(), "Stress across the section of the shape without stress."},
+        {"/dynamics_state/initial_zz", &state.initial_zz, yields, "Pa", any(), "Stress across the section at zero strain in the section."},
         {"/dynamics_state/stress_zz", &state.stress_zz, yields, "Pa", any(), "Present stress across the section."},
         {"/dynamics_state/stress", &state.stress, yields, "Pa", any(), "Biot's stress {xx, yy, xy}, tension positive."},
     };

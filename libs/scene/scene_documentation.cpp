@@ -30,14 +30,14 @@ This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
   run clockwise from north.
 * **Signs.** Tension, extension and opening are positive in all programs and files. Keys with compression
   in their name are positive in compression. Strengths are positive numbers.
-* A date is a TOML date such as `1994-06-15`, if `start` is one, or a number of days since the start. If `start` is
-  a number, all dates are numbers on the same scale of days: with `start = 100`, `date = 130` is 30 days after it.
+* If `start` is a TOML date such as `1994-06-15`, all dates are TOML dates. If `start` is a number, all dates are numbers
+  on the same scale of days: with `start = 100`, `date = 130` is 30 days after it.
 * A polygon lists its corners in order, in either direction. It is not closed: the last corner differs from the
   first.
 * A circle can replace a polygon: `{ center_m = [0, 8], radius_m = 4 }`. It has 32 corners on the circle, or `sides = n`.
   A polygon of 32 sides encloses 0.64 percent less than the circle.
 * An arc can replace a corner of a polygon or line: `{ through_m = [5, 12], to_m = [10, 8] }`. It begins at the corner
-  before it. Its number of sides is its share of 32, at least 2, or `sides = n`.
+  before it. A full circle has 32 sides; an arc has its part of them, at least 2, or `sides = n`.
 * `[table]` occurs once in a scene. `[[table]]` may occur many times: each one describes one joint, one stage, and
   so on.
 * A law is written on one line: `spacing = { law = "lognormal", mean_m = 2.5, deviation_m = 1 }`.

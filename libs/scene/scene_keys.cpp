@@ -634,9 +634,8 @@ Table<WrittenMapped> mapped()
              "rows of a trace one after another; GeoPackage, Shapefile or DXF, if the programs were built "
              "with GDAL. If every id is a whole number from 0 to 2097151, it is the number of the joint. "
              "Otherwise the position in the file is its number."),
-         text(
-             "layer", &W::layer,
-             "Layer of the file, of a DXF file that of its entities. Needed where lines are in several layers.")
+         text("layer", &W::layer,
+              "Layer of the file (DXF: layer of the entities). Needed where lines are in several layers.")
              .optional(),
          text("property", &W::property,
               "Name of a property, in CSV of a column. Only traces for which it has the value below are "
@@ -689,8 +688,8 @@ Table<Stage> stage()
          polygons("remove_m", &Stage::remove, "The rock inside these polygons is excavated."),
          choice(
              "displacements", &Stage::reset_displacements, {{"go on", false}, {"reset", true}},
-             "Reset: displacements are also counted from the equilibrium after this stage, until the next stage "
-             "that resets them.")
+             "Reset: displacements have a second count, which begins at the equilibrium after this stage and ends "
+             "at the next stage that resets them. The first count, since the in-situ equilibrium, goes on.")
              .or_else(std::string("go on"))}};
 }
 
@@ -702,7 +701,8 @@ Table<MonitoringPoint> monitoring_point()
          point(
              "at_m", &MonitoringPoint::at,
              "Its place, inside the section or on its outline. A point on the face of an excavation belongs "
-             "to the rock that stays. A point between two stages belongs to the rock that stays longer."),
+             "to the rock that stays. A point on the border between the rock of two stages belongs to the "
+             "rock that stays longer."),
          date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
              .optional("the start")}};
 }
@@ -784,8 +784,9 @@ Table<Scene> zones()
              "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
              "much at the same size. Quadratic zones are for small displacements.")
              .optional(
-                 "quadratic, with the implicit engine and without [large_displacements], if a rock has the law "
-                 "\"Mohr-Coulomb\", or if there is neither a [[joint_set]] nor a [[mapped]]; otherwise constant strain"),
+                 "constant strain. Exception: quadratic, where rock yields (law \"Mohr-Coulomb\"), and where the scene "
+                 "has neither a [[joint_set]] nor a [[mapped]]. No exception: constant strain with "
+                 "[large_displacements], with engine \"relaxation\" and with masses \"real\""),
          number("size_m", &Scene::zone_size, metres, zone_sizes,
                 "Longest zone side. If fine_m is given, this size applies only inside the polygon fine_m."),
          polygon("fine_m", &Scene::fine_zones,
@@ -809,11 +810,13 @@ Table<Cutting> cutting()
          "Limits below which details are merged when the section is cut into blocks."},
         {number(
              "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
-             "Vertices that are closer to each other than this are merged, and vertices that are closer to "
-             "an edge than half of it. At most the zone size, and less than the extent of the section.")
+             "Vertices that are closer to each other than this length are merged. Vertices that are closer to an "
+             "edge than half of this length are merged with it. At most the zone size, and less than the extent of the section.")
              .optional("0.02 x zones.size_at_faces_m, or x zones.size_m without that key"),
-         number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
-                "Narrower wedges between edges are closed where vertices move little.")
+         number(
+             "smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
+             "Wedges between two edges that are narrower than this are closed, if this moves no vertex by more "
+             "than 5 times shortest_edge_m.")
              .or_else(std::int64_t{1}),
          choice("dangling_ends", &Cutting::dangling_ends,
                 {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},

@@ -128,7 +128,8 @@ with h5py.File("result.h5") as file:
     page << "\nThe group `/warnings` is there only if a program of the chain warned.\n";
     list(page, "Network", schema::fields_of(network), schema::invariants_of(network));
     list(page, "Equivalent joints", schema::fields_of(equivalent), schema::invariants_of(equivalent));
-    page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";
+    page
+        << "\nRows of other edges are 0: those that are no joint, and boundary edges without a joint under them.\n";
     std::vector<Field> of_result = schema::fields_of(result);
     std::vector<std::string> components;
     of_result.push_back(schema::component_of_history(components));

@@ -102,8 +102,8 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/fates/fate", &fates.fate, {"joint"}, "1", between(0, 4),
          "What became of the joint: 0 kept (all of it is on block edges), 1 clipped (the part inside the "
          "section is on block edges), 2 trimmed (a part ended inside a block), 3 merged (a part was on "
-         "edges that vanished), 4 dropped (nothing is on block edges). For 1 to 3 parts up to the shortest "
-         "edge do not count. The lengths below, without the extension, add up to the joint's length."},
+         "edges that vanished), 4 dropped (nothing is on block edges). For the values 1, 2 and 3 only parts longer than the "
+         "shortest edge count. The lengths below, without the extension, add up to the joint's length."},
         {"/fates/kept_length", &fates.kept, {"joint"}, "m", at_least(0), "On block edges with its properties."},
         {"/fates/shared_length", &fates.shared, {"joint"}, "m", at_least(0),
          "On block edges with the properties of another joint on them."},
@@ -263,8 +263,8 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "Largest displacement that remains until rest, by estimate: from the softest mode that dynamic relaxation shows, or "
          "from one more correction; -1 after a dynamic analysis with large displacements, which has none."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
-         "Work of weight, of forces of excavated rock and of tractions, not that of displaced boundaries; the sum of "
-         "the next three."},
+         "Work of weight, of forces of excavated rock and of tractions. Boundaries with a prescribed displacement "
+         "move before the search; their work is not included. So it is the sum of the next three."},
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
          "Increase of the energy stored in zones and contacts."},
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
@@ -353,10 +353,11 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/dynamic_time", &dynamics.dynamic_time, {"moment"}, "s", at_least(0), "Time since the dynamic analysis began."},
         {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "State of the section at this moment."},
         {"/dynamics/work_of_loads", &dynamics.work_of_loads, {"moment"}, "J/m", any(),
-         "Work of weight, of forces of excavated rock and of tractions since then; except for the error of time "
-         "steps the sum of the next four."},
+         "Work of weight, of forces of excavated rock and of tractions since the dynamic analysis began. It is the sum of the next "
+         "four, except for the error of time steps."},
         {"/dynamics/kinetic_energy", &dynamics.kinetic_energy, {"moment"}, "J/m", any(),
-         "Kinetic energy; a little below 0 where all velocities change sign at once."},
+         "Kinetic energy, from the product of the velocities before and after the moment; so it is a little below 0 where all velocities "
+         "change sign at once."},
         {"/dynamics/stored_energy", &dynamics.stored_energy, {"moment"}, "J/m", any(),
          "Increase of the energy stored in zones and contacts."},
         {"/dynamics/friction_energy", &dynamics.friction_energy, {"moment"}, "J/m", any(),
@@ -382,8 +383,8 @@ std::vector<Field> fields_of(GuardHistory& guards)
         {"/guards/weight_error", &guards.weight_error, {"state"}, "1", at_least(0),
          "Loads minus the weight of the present rock, over the weight of all rock."},
         {"/guards/penetration", &guards.penetration, {"state"}, "m", at_least(0),
-         "Closure of a contact beyond its normal stress over its normal stiffness, or beyond its gap where "
-         "it is open; the largest. 0 at large displacements."},
+         "Largest excess of a contact's closure over the closure that follows from its normal stress and normal "
+         "stiffness. Of an open contact: the overlap of its faces. 0 at large displacements."},
     };
     // clang-format on
 }
@@ -441,8 +442,8 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     // clang-format off
     std::vector<Field> all = {
         {"/checkpoint/is_in_situ", &checkpoint.is_in_situ, {}, "1", between(0, 1),
-         "1 before the in-situ equilibrium; a run then starts from the scene, and only the search below is "
-         "used."},
+         "1 before the in-situ equilibrium; a run then starts from the scene, and uses only "
+         "/checkpoint/search."},
         {"/checkpoint/stage", &checkpoint.stage, {}, "1", at_least(0),
          "Number of stages that are complete."},
         {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0),
@@ -451,7 +452,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
-         "In {x, y}: 1 free, 0 fixed itself or without rock."},
+         "In {x, y}: 1 free, 0 fixed by a boundary or without rock. A gridpoint that is only tied to a fixed one counts as free."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} on the gridpoint."},
         {"/checkpoint/force", &checkpoint.force, gridpoint, "N/m", any(), "Unbalanced force {x, y}, also of a fixed "
                                                                           "gridpoint."},
@@ -474,15 +475,15 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/steps_since_record", &checkpoint.steps_since_record, {}, "1", at_least(0),
          "Solver steps since a row of the step history."},
         {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
-         "Creep steps since the last state that was recorded by their number (--states)."},
+         "Creep steps since the last state that --states recorded."},
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
         {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 4),
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
          "energy balance is off, 4 rock slid in a creep step."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
         {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
-         "Number of dynamic relaxations or dynamic analyses between this moment and the unfinished search "
-         "for equilibrium."},
+         "The run computes again from this moment. So many dynamic relaxations or dynamic analyses end before the "
+         "unfinished search for equilibrium begins."},
         {"/checkpoint/search", &checkpoint.search, {"search_value"}, "1", any(),
          "State of the unfinished search, in the order of the program of the same version; empty if there "
          "is none."},
@@ -593,7 +594,8 @@ const std::vector<Described>& dimensions()
         {"statistic", "a row of the report on the network"},
         {"gridpoint",
          "a corner of zones, or the middle of a side of a quadratic zone; each side of a joint has its own gridpoints"},
-        {"released_gridpoint", "a gridpoint, within a stage; otherwise there is none"},
+        {"released_gridpoint",
+         "a gridpoint, if the checkpoint is from within a stage; otherwise this dimension is 0"},
         {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
@@ -605,7 +607,7 @@ const std::vector<Described>& dimensions()
         {"trial", "a run by which a factor of safety was found"},
         {"coarse_trial",
          "a run with zones twice as large, for the estimate of the influence of the mesh on the factor of safety"},
-        {"remark", "a line of the summary so far"},
+        {"remark", "a line that the summary will have, from the part of the run before the checkpoint"},
         {"search_value", "a number of the state of a search for equilibrium"},
         {"warning", "a warning of a program"},
     };

@@ -215,8 +215,7 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
             farthest = std::max(farthest, -exact);
         }
         EXPECT_LT(left, 1e-3 * farthest);
-        EXPECT_GT(convergence.remaining_displacement,
-                  0.9 * left);
+        EXPECT_GT(convergence.remaining_displacement, 0.9 * left);
         EXPECT_LT(convergence.remaining_displacement,
                   1.01e-3 * farthest); // its farthest gridpoint is above a middle
     }
