@@ -178,7 +178,8 @@ std::vector<Option> options()
          "(default 1)"},
         {"factor-of-safety", "",
          "bracket the largest F with which every equilibrium is found, by runs with different F; "
-         "result.h5 is of that F, result.failed.h5 of the next one"},
+         "result.h5 is the run with the largest F that has every equilibrium, result.failed.h5 the run with the "
+         "smallest F that has not"},
         {"safety-width", "W", "width of the bracket of --factor-of-safety, over F (default 0.01)"},
         {"safety-displacement", "R",
          "a run fails if its largest displacement is more than R times that with strengths 64 times as large "

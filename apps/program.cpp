@@ -550,13 +550,15 @@ Progress::~Progress()
         std::cerr << "\r\x1b[K" << std::flush;
 }
 
-std::string Progress::time_left(double fraction) const
+std::string time_left(double gone, double stalled, double first, double fraction)
 {
-    constexpr double shortest = 5; // [s]: earlier the rate is not known
-    const double gone = std::chrono::duration<double>(Clock::now() - start_).count(),
-                 done = fraction - first_;
+    constexpr double shortest = 5,
+                     patience = 10; // [s]: earlier the rate is not known; later it is not what it was
+    const double done = fraction - first;
     if (gone < shortest || done <= 0)
         return "";
+    if (stalled > std::max(patience, (gone - stalled) * (1 - fraction) / done))
+        return ", time left not known";
     const double left = gone * (1 - fraction) / done;
     const bool in_minutes = left > 90, in_hours = left > 90 * 60;
     const double unit = in_hours ? 3600 : in_minutes ? 60 : 1;
@@ -572,11 +574,20 @@ void Progress::show(double fraction, const What& what)
     fraction = std::clamp(fraction, 0.0, 1.0);
     if (fraction > 0)
         first_ = std::min(first_, fraction); // a run that continues does not begin at 0
-    if (is_quiet_ || Clock::now() < next_)
+    const Clock::time_point now = Clock::now();
+    if (fraction > last_) {
+        last_ = fraction;
+        advanced_ = now;
+    }
+    if (is_quiet_ || now < next_)
         return;
-    const std::string share =
-        fraction > 0 ? std::to_string(static_cast<int>(100 * fraction)) + "%" + time_left(fraction) + ": "
-                     : "";
+    const auto since = [now](Clock::time_point then) {
+        return std::chrono::duration<double>(now - then).count();
+    };
+    const std::string share = fraction > 0
+                                  ? std::to_string(static_cast<int>(100 * fraction)) + "%" +
+                                        time_left(since(start_), since(advanced_), first_, fraction) + ": "
+                                  : "";
     if (!on_terminal_) {
         next_ = Clock::now() + std::chrono::minutes(1);
         std::cerr << program_ + ": " + share + what(unlimited) + "\n" << std::flush;

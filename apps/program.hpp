@@ -161,8 +161,7 @@ public:
     static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
     // `fraction` done, from 0 (not known) to 1, and what is being done. Cheap to call often: asks for it 10 times a second at most.
-    // After some seconds the time left is shown, as if the rest went on at the same rate. The bar goes where there is no
-    // room for it.
+    // After some seconds the time left is shown: time_left(). The bar goes where there is no room for it.
     void show(double fraction, const What& what);
 
 private:
@@ -171,10 +170,15 @@ private:
     bool is_quiet_, on_terminal_;
     bool drawn_ = false;
     Clock::time_point start_ = Clock::now(), next_{};
-    double first_ = 1; // the fraction that this run began at
-
-    std::string time_left(double fraction) const;
+    double first_ = 1;                    // the fraction that this run began at
+    double last_ = 0;                     // the largest fraction so far
+    Clock::time_point advanced_ = start_; // when it became so large
 };
+
+// The time left in words, ", 3 min left", as if the rest went on at the rate so far. `gone`: time since the beginning, `stalled`: time
+// since the fraction last grew [s]; `first`, `fraction`: done at the beginning, and now. Empty while the rate is not known. Not known
+// any more once nothing has advanced for longer than the rest should have taken, and for 10 s: a search near failure can take very long.
+std::string time_left(double gone, double stalled, double first, double fraction);
 
 // Says a line on stderr: "demsolve: ...".
 void print_line(const std::string& program, const std::string& text);

@@ -60,10 +60,11 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
         // Of segments nothing is bridged on their lines, but extensions to the border of a block are rock.
         const bool are_extensions = sets.target_persistence[set] == 1;
         const std::string bridges = are_extensions ? "extensions" : "bridges";
-        if (are_extensions)
-            summary.add(name + ": joint on edges", rounded(sets.edge_persistence[set]) +
+        if (are_extensions) {
+            const std::string share = rounded(sets.edge_persistence[set]);
+            summary.add(name + ": joint on edges", (share == "1" ? "nearly all" : share) +
                                                        " of the length; the rest: extensions through rock");
-        else
+        } else
             summary.add(name + ": persistence", rounded(sets.target_persistence[set]) + " in the scene, " +
                                                     rounded(sets.line_persistence[set]) +
                                                     " on lines (error " +

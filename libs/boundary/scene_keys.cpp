@@ -60,10 +60,11 @@ Table<Boundary> boundary()
              .optional(),
          text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
              .optional(),
-         vector("traction_MPa", &Boundary::traction, MPa, stresses,
-                "Total force on the rock per area {x, y}, 0 in a fixed direction. In the other directions no "
-                "support balances the in-situ stress. So this force must include the traction of the in-situ "
-                "stress.")
+         vector(
+             "traction_MPa", &Boundary::traction, MPa, stresses,
+             "Total force on the rock per area {x, y}, 0 in a fixed direction. In a direction that is not fixed, "
+             "nothing else holds the rock there: the force must be the traction of the in-situ stress, plus the load. (On "
+             "rollers this is the shear traction, usually 0.)")
              .optional(),
          vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
                 "Imposed displacement {x, y}, 0 in a direction that is not fixed. It needs fix and "

@@ -332,7 +332,7 @@ fields::ForceFields fields_in_files()
             {"moving_contact", "two faces of blocks that touch at a recorded moment of a dynamic analysis"},
             {"direction", "the normal or the shear of a contact that creeps"},
             {"direction_unit", "a Kelvin unit or dashpot of a direction"},
-            {"face", "a side of a zone at the ground, or with no rock of the same block before it"},
+            {"face", "a side of a zone with no rock of the same block before it; a fixed border (ground) has faces, too"},
             {"pair", "two faces that may touch"},
             {"pair_unit", "a Kelvin unit or dashpot of such a pair. Normal direction: one at each end of the face; shear: one"},
         },

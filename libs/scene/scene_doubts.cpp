@@ -284,7 +284,8 @@ private:
         add(given, given.find("ground_m") ? "ground_m" : "elevation_m",
             "the stress on the outline at [" + shown(rounded(where.x())) + ", " + shown(rounded(where.y())) +
                 "] m is " + shown(rounded(largest / unit::MPa)) +
-                " MPa, where no [[boundary]] supports or loads it; expected about 0 on a free surface");
+                " MPa in a direction in which no [[boundary]] supports or loads it; expected about 0: no stress on a "
+                "free surface, no shear stress on rollers");
     }
 
     void look_at_zones()

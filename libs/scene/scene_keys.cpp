@@ -236,9 +236,9 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, Fisher's law describes the "
-         "planes that a scanline meets. This scanline lies in the section, normal to the mean trace. The bootstrap describes all "
-         "planes of the set. For segments and discs both laws describe all joints in space. The "
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For segments and "
+         "discs the law describes all joints in space. For lines, the bootstrap describes all planes of the set; Fisher's law "
+         "describes only the planes that a scanline meets which lies in the section, normal to the mean trace. The "
          "larger the angle between a joint and the section, the more often the section cuts it; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
@@ -252,7 +252,8 @@ Table<WrittenOrientation> orientation_law()
          number<W>(
              "concentration", concentration, no_unit, from(5).to(1e6),
              "Fisher's constant kappa: a large value means little scatter. 63 percent of the poles lie "
-             "within 81 / sqrt(kappa) degrees of their mean. Needed by Fisher's law, refused by the other.")
+             "within 81 / sqrt(kappa) degrees of their mean; the standard deviation about each of two axes is 57.3 / sqrt(kappa) "
+             "degrees, so 5 degrees are kappa = 131. Needed by Fisher's law, refused by the other.")
              .optional(),
          key_of<W>({"poles_deg",
                     "poles",
@@ -784,9 +785,9 @@ Table<Scene> zones()
              "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
              "much at the same size. Quadratic zones are for small displacements.")
              .optional(
-                 "constant strain. Exception: quadratic, where rock yields (law \"Mohr-Coulomb\"), and where the scene "
-                 "has neither a [[joint_set]] nor a [[mapped]]. No exception: constant strain with "
-                 "[large_displacements], with engine \"relaxation\" and with masses \"real\""),
+                 "constant strain if the scene has [large_displacements], engine \"relaxation\" or masses \"real\". In other "
+                 "scenes: quadratic if a rock has the law \"Mohr-Coulomb\", and if there is neither a [[joint_set]] nor a "
+                 "[[mapped]]; otherwise constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes,
                 "Longest zone side. If fine_m is given, this size applies only inside the polygon fine_m."),
          polygon("fine_m", &Scene::fine_zones,

@@ -361,7 +361,7 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/stored_energy", &dynamics.stored_energy, {"moment"}, "J/m", any(),
          "Increase of the energy stored in zones and contacts."},
         {"/dynamics/friction_energy", &dynamics.friction_energy, {"moment"}, "J/m", any(),
-         "Energy lost to slip and yield; a little below 0 where slip dilates by the friction angle, which loses none."},
+         "Energy lost to slip and yield. Slip that dilates by the friction angle loses no energy: there the value may be a little below 0."},
         {"/dynamics/damped_energy", &dynamics.damped_energy, {"moment"}, "J/m", any(),
          "Energy taken by dashpots, and by stopping slow movement."},
         {"/dynamics/fastest", &dynamics.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
@@ -482,8 +482,8 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "energy balance is off, 4 rock slid in a creep step."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
         {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
-         "The run computes again from this moment. So many dynamic relaxations or dynamic analyses end before the "
-         "unfinished search for equilibrium begins."},
+         "A run that continues computes again from this moment. This is the number of dynamic relaxations and dynamic "
+         "analyses that it ends before it comes to the unfinished search for equilibrium."},
         {"/checkpoint/search", &checkpoint.search, {"search_value"}, "1", any(),
          "State of the unfinished search, in the order of the program of the same version; empty if there "
          "is none."},

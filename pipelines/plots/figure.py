@@ -362,10 +362,13 @@ def draw_region_borders(scene, axes):
 
 
 def legend_below(axes, *groups):
-    """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height."""
+    """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height. Labels that are
+    longer than the figure is wide have several lines: the layout would make the axes smaller."""
     width, height = axes.figure.get_size_inches()
     groups = [group for group in groups if group]
-    longest = max(len(entry.get_label()) for group in groups for entry in group)
+    for entry in (entry for group in groups for entry in group):
+        entry.set_label("\n".join(wrapped(entry.get_label(), int((width - 0.5) / 0.056)) or [" "]))
+    longest = max(len(line) for group in groups for entry in group for line in entry.get_label().splitlines())
     columns = int(width / (0.5 + 0.048 * longest))  # a sign and the text [in]
     if 1 < len(groups) <= columns:
         columns, rows = len(groups), max(len(group) for group in groups)
@@ -375,7 +378,8 @@ def legend_below(axes, *groups):
         entries = [entry for group in groups for entry in group]
         columns = max(1, min(len(entries), columns))
         rows = -(-len(entries) // columns)
-    axes.figure.set_size_inches(width, height + 0.22 + 0.16 * rows)
+    lines = rows + sum(entry.get_label().count("\n") for entry in entries)
+    axes.figure.set_size_inches(width, height + 0.22 + 0.16 * lines)
     axes.figure.cuts_margins = True  # of a high picture the legend would reach beyond its lower edge
     axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.52 / (height - 0.5)), ncol=columns,
                 borderaxespad=0)

@@ -377,21 +377,35 @@ def draw_failure(file, section, axes, fills=""):
     entries.append(draw_blocks(section, of_moving, axes, 7, MOVING, edgecolor=figure.COLORS[1], linewidth=1.2))
     label = "blocks that moved most" if figure.array(file, "/failure/moves_on")[0] == 0 else "moving blocks"
     label = f"{len(moving)} {label if len(moving) > 1 else label.replace('blocks', 'block')}"
+    area = figure.array(file, "/blocks/area")[moving]
+    label += f", {area.sum():.3g} m2" + (" in all" if len(moving) > 1 else "")
     largest = np.linalg.norm(motion, axis=1).max()
+    shift = (section.position - section.start)[section.zones].mean(axis=1)
+    place = figure.array(file, "/failure/place") + [shift[block == one].mean(axis=0) if one in block else (0, 0) for one in moving]
     if largest > 0:
-        shift = (section.position - section.start)[section.zones].mean(axis=1)
         size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
         of_all = np.ptp(section.position[section.zones[of_moving >= 0]].reshape(-1, 2), axis=0).max()
         length = np.clip(of_all, 0.03 * size, 0.1 * size)
-        place = figure.array(file, "/failure/place") + [shift[block == one].mean(axis=0) if one in block else (0, 0) for one in moving]
         axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / length,
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        label += f" (red arrows, on a scale of their own; the longest, a block's mean, is {length_text(largest)} in " + (
+        label += f" (numbers: largest blocks; red arrows, on a scale of their own; the longest, a block's mean, is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
+    name_blocks(axes, place, moving, area)
     entries[-1].set_label(label + fills)
     return entries
+
+
+def name_blocks(axes, place, block, area, most=12):
+    """The numbers of the largest blocks, each at its own place; a block that is too near to a larger one has none."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    named = []
+    for one in np.argsort(-area, kind="stable"):
+        if len(named) < most and all(np.abs((place[one] - other) / (high - low)).max() > 0.045 for other in named):
+            named.append(place[one])
+            axes.text(*place[one], str(block[one]), fontsize=6, ha="center", va="center", zorder=9, path_effects=figure.HALO,
+                      clip_on=True)
 
 
 def largest_unbalanced(file):
@@ -437,7 +451,9 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     state = state_index(file, state)
     fills = ""
     if around_failure:
-        window = window_of_failure(file, Section(file, state, magnify)) or window
+        if window:
+            raise figure.NotWanted("--window and --around-failure both choose a part of the section; expected one of them")
+        window = window_of_failure(file, Section(file, state, magnify))
         if window is None and "/failure" in file and len(figure.array(file, "/failure/block")):
             fills = "; these fill most of the section"
     section = Section(file, state, magnify, window, since_reset)

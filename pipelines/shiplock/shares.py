@@ -497,7 +497,8 @@ def main():
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
         "The network's total share (*in all*), computed from the differences of the pairs of runs without the polynomial: " + ", ".join(
             f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
-        f"Lack of fit, of the variance of the logarithm: {lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
+        f"Share of the variance of the logarithm of each result that neither polynomial nor network explains (lack of fit): "
+        f"{lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
         "Squares and products in the polynomial: " + ("; ".join(more) or "none") + ".",
         f"Logarithms of stress, and of joint stiffness times spacing: their correlation is {told[0]:.2f} in all sets. In the {told[2]} sets "
         f"that fit best it is {told[1]:.2f}.",

@@ -158,7 +158,7 @@ TEST(doubts, stress_on_a_free_surface)
 {
     expect_doubt(
         "elevation_m = 40", "elevation_m = 46",
-        "the stress on the outline at [54, 40] m is 0.159 MPa, where no [[boundary]] supports or loads it");
+        "the stress on the outline at [54, 40] m is 0.159 MPa in a direction in which no [[boundary]] supports or loads it");
     EXPECT_TRUE(doubts_of(replaced(sound, "elevation_m = 40", "elevation_m = 44")).empty()) << "little cover";
     const std::string load =
         "[[boundary]]\nfrom_m = [60, 40]\nto_m = [0, 40]\ntraction_MPa = [0, -0.158922]\n[schedule]";
