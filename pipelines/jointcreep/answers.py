@@ -17,7 +17,7 @@ import textwrap
 import numpy as np
 
 from . import failure, files, intervals
-from .design import openturns
+from .design import calls_openturns, openturns
 from .intervals import CONFIDENCE
 from .quantities import MOVING, NO_EQUILIBRIUM, UNDECIDED, ending_of, file_of
 from .study_file import BY_STOP_RULE, ENDS, EXTENSIBLE, NETWORK
@@ -441,6 +441,7 @@ def crossed_shares(study, rows, given, at):
             for name, share, of_low, of_high in zip(names, shares(*map(np.arange, table.shape)), low, high)]
 
 
+@calls_openturns
 def sobol_indices(study, rows, at):
     """First-order and total Sobol indices by Martinez's estimator, with its asymptotic intervals. Points of the design are left
     out where one of their runs has no value."""

@@ -7,6 +7,8 @@ A plain design of more runs begins with the runs of a smaller one.
 
 import functools
 import math
+import signal
+import threading
 
 import numpy as np
 
@@ -26,6 +28,25 @@ def openturns():
                         "give [[vary]] values in place of a law: 100 quantiles of the law, at the probabilities 0.005, 0.015, ... 0.995") from None
     openturns.Log.Show(openturns.Log.NONE)
     return openturns
+
+
+def hear_interrupts():
+    """Puts Python's handler of SIGINT back. Calls of OpenTURNS put one in its place that aborts the program."""
+    handler = signal.getsignal(signal.SIGINT)
+    if handler is not None and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, handler)
+
+
+def calls_openturns(function):
+    """A decorator: Ctrl-C stops the program after the function as before it."""
+    @functools.wraps(function)
+    def called(*arguments):
+        try:
+            return function(*arguments)
+        finally:
+            hear_interrupts()
+
+    return called
 
 
 def draws_with_numpy(study):
@@ -115,6 +136,7 @@ def mapped(study, points):
     return np.array(joint_law(study).getInverseIsoProbabilisticTransformation()(standard))
 
 
+@calls_openturns
 def draw(study):
     """Networks [run] and values of the parameters, a list of lists [run][parameter]."""
     design, size = study.design, study.design.networks_drawn()

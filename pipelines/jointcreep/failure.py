@@ -28,6 +28,7 @@ def fails(study, row):
     return any(value > limit for limit in quantity.above) or any(value < limit for limit in quantity.below)
 
 
+@design.calls_openturns
 def estimate(study, replicate, run):
     """Probability of failure given the network of a replicate. run(values) makes a run with values of the parameters and returns its
     line of results."""
@@ -37,6 +38,7 @@ def estimate(study, replicate, run):
     dimension = joint.getDimension()
 
     def standing(values):
+        design.hear_interrupts()
         return [-1.0 if fails(study, run(list(values))) else 1.0]
 
     event = ot.ThresholdEvent(ot.CompositeRandomVector(ot.PythonFunction(dimension, 1, standing), ot.RandomVector(joint)), ot.Less(), 0.0)

@@ -274,7 +274,7 @@ class File:
 
 class Study:
     """The folder of a study: tables `runs`, `times`, `answers`, `convergence`, `shares`, as their CSV files have them. Numbers are
-    float, and nan where a field is empty; columns with words are str."""
+    float, and nan where a field is empty; numbers of runs and networks and exit codes are int; columns with words are str."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -303,11 +303,12 @@ class Study:
 
 
 TEXTS = ("no equilibrium", "failure stage", "program", "reason")  # columns of text, also where all fields are empty
+INTEGERS = ("run", "network", "exit code", "attempts")
 
 
 def csv_table(path):
     """A CSV file with a heading as a table. Columns of which all fields are numbers or empty are float, nan where empty, but for those
-    of TEXTS; a unit is what stands in brackets at the end of a heading."""
+    of TEXTS, and of INTEGERS; a unit is what stands in brackets at the end of a heading. Text has no unit: ""."""
     with open(path, encoding="utf-8", newline="") as file:
         heads, *rows = csv.reader(file)
     table = Table()
@@ -315,8 +316,10 @@ def csv_table(path):
         values = np.array(column, str)
         if name not in TEXTS:
             with contextlib.suppress(ValueError):
-                values = np.array([float(field) if field else np.nan for field in column])
-        table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else "1")
+                values = np.array([int(field) for field in column] if name in INTEGERS and all(column) else
+                                  [float(field) if field else np.nan for field in column])
+        unit = "" if values.dtype.kind == "U" else "1"
+        table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else unit)
     return table
 
 

@@ -2,8 +2,7 @@
 """The section at one state of a result file: displacement, stress or the state of the contacts. Removed rock is not
 drawn, and positions are those at the start, unless displacements are magnified.
 
-The state is its number, counted from 0, the name of the stage that it follows, the plain word for that name
-(stage_names.py), or "last".
+The state is its number, counted from 0, the name of the stage that it follows (blanks may be written as "-"), or "last".
 
 Of a run that found no equilibrium, the last state is that before the stage that found none. Its picture also shows what happened
 after it: the rock that was excavated, and the moving blocks, with arrows along their motion. The title says why the run ended.

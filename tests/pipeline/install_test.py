@@ -36,7 +36,8 @@ class Install(ChainTest):
         module = "lib/jointcreep/jointcreep_gdal.so"  # where GDAL is
         has_gdal = (self.chain.programs / "jointcreep_gdal.so").exists()
         source = self.chain.source
-        data = [path.relative_to(source) for path in (source / "data").rglob("*") if path.is_file()]
+        data = [path.relative_to(folder) for folder, name in ((source, "data"), (source / "pipelines/studies", "profiles"))
+                for path in (folder / name).rglob("*") if path.is_file()]
         pages = [path.relative_to(source) for end in ("md", "png", "svg") for path in (source / "docs").rglob(f"*.{end}")]
         of_doc = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE", "copyright", *map(str, pages)]
         headers = [path for folder in ("model", "store") for path in (self.prefix / "include/jointcreep" / folder).glob("*.hpp")]

@@ -7,6 +7,7 @@ it is not installed.
 import base64
 import contextlib
 import csv
+import ctypes
 import html
 import importlib.util
 import io
@@ -1006,6 +1007,17 @@ values = [1, 2, 6]
         self.assertAlmostEqual(r, 1, places=12)
         self.assertIn("warning: floor y (mm): 3 of 72 runs, of 2 networks, have no value; answers are of the other runs\n",
                       answers.summary(study, rows, "", [], []))
+
+    def test_interrupts_after_openturns(self):
+        """A call of OpenTURNS puts a handler in the place of Python's, here the system's; Ctrl-C is heard all the same."""
+        @draw_design.calls_openturns
+        def replaces_the_handler():
+            ctypes.CDLL(None).signal(signal.SIGINT, 0)
+
+        replaces_the_handler()
+        with self.assertRaises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(10)
 
     def test_lists_of_values_need_no_openturns(self):
         lists = "\n[[vary]]\nname = 'angle'\nkey = 'joint_material.joint.friction_angle_deg'\nvalues = [30, 35, 40, 45]\n"
