@@ -237,8 +237,8 @@ Table<WrittenOrientation> orientation_law()
     return {
         {"joint_set.orientation", inside, optional,
          "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For segments and "
-         "discs the law describes all joints in space. For lines, the bootstrap describes all planes of the set; Fisher's law "
-         "describes only the planes that a scanline meets which lies in the section, normal to the mean trace. The "
+         "discs the law describes all joints in space. For lines, the bootstrap describes all planes of the set. Fisher's law "
+         "describes only the planes that cross a certain scanline: a line in the section, normal to the mean trace. The "
          "larger the angle between a joint and the section, the more often the section cuts it; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
@@ -272,7 +272,8 @@ Table<WrittenOrientation> orientation_law()
              .optional(),
          number<W>(
              "scanline_trend_deg", trend, degrees, from(0).to(360),
-             "Bearing of the lower end of the scanline or borehole on which the planes were measured. They "
+             "Bearing of the scanline or borehole on which the planes were measured, toward its lower end (toward its upper end with "
+             "a negative plunge). They "
              "then have Terzaghi's weights: one over the cosine of the angle between pole and scanline." +
                  bootstrap_only)
              .together("scanline"),
@@ -486,8 +487,10 @@ Table<WrittenDensity> density_table()
                    "Direction of the scanline in the section, counter-clockwise from the x axis; with "
                    "P10_per_m only.")
              .optional(),
-         number<W>("scanline_trend_deg", trend, degrees, from(0).to(360),
-                   "Bearing of the lower end of a scanline in space; with P10_per_m only.")
+         number<W>(
+             "scanline_trend_deg", trend, degrees, from(0).to(360),
+             "Bearing of a scanline in space, toward its lower end (toward its upper end with a negative plunge); with "
+             "P10_per_m only.")
              .together("scanline"),
          number<W>("scanline_plunge_deg", plunge, degrees, from(-90).to(90),
                    "Its inclination below the horizontal.")
@@ -786,8 +789,8 @@ Table<Scene> zones()
              "much at the same size. Quadratic zones are for small displacements.")
              .optional(
                  "constant strain if the scene has [large_displacements], engine \"relaxation\" or masses \"real\". In other "
-                 "scenes: quadratic if a rock has the law \"Mohr-Coulomb\", and if there is neither a [[joint_set]] nor a "
-                 "[[mapped]]; otherwise constant strain"),
+                 "scenes: quadratic if a rock has the law \"Mohr-Coulomb\"; also quadratic if there is neither a [[joint_set]] "
+                 "nor a [[mapped]]; otherwise constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes,
                 "Longest zone side. If fine_m is given, this size applies only inside the polygon fine_m."),
          polygon("fine_m", &Scene::fine_zones,

@@ -495,7 +495,7 @@ def main():
         f"{number} runs, two networks for each of {number // 2} sets of values; {failed} without equilibrium; {len(rows)} sets are used.",
         "Mean and standard deviation: " + "; ".join(
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
-        "The network's total share (*in all*), computed from the differences of the pairs of runs without the polynomial: " + ", ".join(
+        "The network's total share (*in all*), computed without the polynomial, from the differences of the pairs of runs: " + ", ".join(
             f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
         f"Share of the variance of the logarithm of each result that neither polynomial nor network explains (lack of fit): "
         f"{lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
