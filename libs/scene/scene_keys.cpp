@@ -236,9 +236,10 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For segments and "
-         "discs the law describes all joints in space. For lines, the bootstrap describes all planes of the set. Fisher's law "
-         "describes only the planes that cross a certain scanline: a line in the section, normal to the mean trace. The "
+         "Law of the poles (normals) of the joint planes in space, which needs section.azimuth_deg. For segments and "
+         "discs the law describes all joints in space. For lines there are two cases. The bootstrap describes all planes of "
+         "the set. Fisher's law describes only those planes of the set that cross a scanline which lies in the section, "
+         "normal to the mean trace. The "
          "larger the angle between a joint and the section, the more often the section cuts it; jointgen takes this into account."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "

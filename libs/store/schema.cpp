@@ -482,8 +482,8 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "energy balance is off, 4 rock slid in a creep step."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
         {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
-         "Number of dynamic relaxations and dynamic analyses from the moment of the checkpoint to the unfinished search "
-         "for equilibrium. A run that continues makes them again, and then continues this search."},
+         "Number of dynamic relaxations and dynamic analyses that a run makes again if it continues from this checkpoint, "
+         "before it continues the unfinished search for equilibrium."},
         {"/checkpoint/search", &checkpoint.search, {"search_value"}, "1", any(),
          "State of the unfinished search, in the order of the program of the same version; empty if there "
          "is none."},

@@ -492,7 +492,7 @@ def main():
     factor = [f"({name.removesuffix(', times')})" for name, _ in names]
     more = [f"{factor[i]}²" if i == j else f"{factor[i]} · {factor[j]}" for i, j in (term for term in fit.terms if len(term) == 2)]
     facts = [
-        f"{number} runs, two networks for each of {number // 2} sets of values; {failed} without equilibrium; {len(rows)} sets are used.",
+        f"{number} runs, two networks for each of {number // 2} sets of values; {failed} runs without equilibrium; {len(rows)} sets with two results are used.",
         "Mean and standard deviation: " + "; ".join(
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
         "The network's total share (*in all*), computed without the polynomial, from the differences of the pairs of runs: " + ", ".join(
