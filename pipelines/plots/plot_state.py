@@ -389,7 +389,8 @@ def draw_failure(file, section, axes, fills=""):
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        label += f" (numbers: largest blocks; red arrows, on a scale of their own; the longest, a block's mean, is {length_text(largest)} in " + (
+        numbers = "numbers: the largest of them; " if len(moving) > 1 else ""
+        label += f" ({numbers}red arrows, on a scale of their own; the longest, a block's mean, is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
     name_blocks(axes, place, moving, area)
     entries[-1].set_label(label + fills)

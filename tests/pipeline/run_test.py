@@ -200,10 +200,14 @@ class Run(ChainTest):
         self.assertIn("is moving", reason)
         self.assertNotIn("moving", title)  # the legend has the blocks
         self.assertNotIn("realization", title)
-        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        labels = [text.get_text().replace("\n", " ") for text in axes.get_legend().get_texts()]
         self.assertIn("excavated then: bench", labels)
         longest = f"{1e3 * np.linalg.norm(failure['/failure/motion']):.3g} mm in 5000 steps of the solver"
-        self.assertIn(f"1 moving block (red arrows, on a scale of their own; the longest, a block's mean, is {longest})", labels)
+        (moving,) = failure["/failure/block"]
+        area = failure["/blocks/area"][moving]
+        self.assertIn(f"1 moving block, {area:.3g} m2 (red arrows, on a scale of their own; the longest, a block's mean, is {longest})", labels)
+        (number,) = [text for text in axes.texts if text.get_text() == str(moving)]
+        np.testing.assert_allclose(number.get_position(), failure["/failure/place"][0])
         plots.figure.plt.close(picture)
 
         # The moving block is enlarged; where all blocks move the picture says so.
@@ -223,7 +227,7 @@ class Run(ChainTest):
         with h5py.File(self.folder / "all.h5", "r+") as file:
             file["/failure/moves_on"][0] = 1
         axes = plots.draw("state", self.folder / "all.h5", around_failure=True).axes[0]
-        self.assertIn(f"{number} moving blocks (", axes.get_legend().get_texts()[-1].get_text())
+        self.assertIn(f"{number} moving blocks, ", axes.get_legend().get_texts()[-1].get_text())
         self.assertIn("; these fill most of the section", axes.get_legend().get_texts()[-1].get_text())
         self.assertLess(axes.get_xlim()[0], 0)
 
