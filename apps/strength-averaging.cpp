@@ -62,8 +62,9 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
         const std::string bridges = are_extensions ? "extensions" : "bridges";
         if (are_extensions) {
             const std::string share = rounded(sets.edge_persistence[set]);
-            summary.add(name + ": joint on edges", (share == "1" ? "nearly all" : share) +
-                                                       " of the length; the rest: extensions through rock");
+            summary.add(name + ": joint on edges",
+                        share == "1" ? "nearly all of the length"
+                                     : share + " of the length; the rest: extensions through rock");
         } else
             summary.add(name + ": persistence", rounded(sets.target_persistence[set]) + " in the scene, " +
                                                     rounded(sets.line_persistence[set]) +
