@@ -26,6 +26,11 @@ def bracket(factor, stands):
     return (low if np.isfinite(low) else None), (high if np.isfinite(high) else None)
 
 
+def in_words(low, high, is_undecided):
+    """Of a bracket: "between 1.2 and 1.25", or without an upper end if the run there is undecided."""
+    return f"at least {low:.4g}, undecided at {high:.4g}" if is_undecided else f"between {low:.4g} and {high:.4g}"
+
+
 def draw_runs(axes, factor, stands, displacement, color):
     """The runs of a search."""
     for kind, marker, _ in KINDS:
@@ -57,7 +62,7 @@ def draw(file, safety_displacement=10):
         low, high = bracket(factor, stands)
         if low is not None and high is not None:
             axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
-            brackets.append(f"{what} between {low:.4g} and {high:.4g}")
+            brackets.append(f"{what} {in_words(low, high, UNDECIDED in stands[factor == high])}")
         for kind, marker, label in KINDS:
             if kind in stands[shown]:
                 entries.setdefault(kind, matplotlib.lines.Line2D([], [], color="k", linestyle="-" if kind == STANDS else "none", linewidth=1,

@@ -292,7 +292,7 @@ def draw_contacts(file, state, section, axes):
     no_joint = figure.untraced_edges(file) | (figure.array(file, "/edges/kind") == figure.WELDED)
     extended = no_joint[figure.array(file, "/mesh/contact_edge")]  # of contacts
     for chosen, label, look in (((status == STUCK) & ~slipped & ~extended, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
-                                ((status == STUCK) & ~slipped & extended, "sticking, in rock (no joint trace)",
+                                ((status == STUCK) & ~slipped & extended, "sticking, rock bridge or extension",
                                  {"color": "0.78", "linewidth": 0.5, "linestyle": (0, (2, 2))}),
                                 (slipped, "sticking, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
         axes.add_collection(LineCollection(lines[chosen[of_contact]], zorder=2, **look))

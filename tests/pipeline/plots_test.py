@@ -519,13 +519,15 @@ class Plots(ChainTest):
             self.assertEqual(row, before[last])
 
     def test_bracket_of_a_factor_of_safety(self):
-        from plot_safety import bracket
+        from plot_safety import bracket, in_words
 
         factor = numpy.array([1 / 64, 1, 2, 1.5, 1.25, 1.125])
         self.assertEqual(bracket(factor, numpy.array([1, 1, 0, -1, 0, 1])), (1.125, 1.25))
         self.assertEqual(bracket(factor, numpy.array([1, 1, 0, -1, 1, 1])), (1.25, 1.5))
         self.assertEqual(bracket(factor[:2], numpy.array([1, 1])), (1, None))
         self.assertEqual(bracket(factor[:2], numpy.array([0, 0])), (None, 1 / 64))
+        self.assertEqual(in_words(1.125, 1.25, False), "between 1.125 and 1.25")
+        self.assertEqual(in_words(1.25, 1.5, True), "at least 1.25, undecided at 1.5")
 
     def test_slivers_do_not_rule_the_scale(self):
         import plot_blocks
