@@ -602,7 +602,7 @@ def undecided_words(study, rows):
         'have no value; probabilities that depend on them have a row "at least", in which none of them counts, and a row "at most", ' \
         "in which all of them do"
     return [f"warning: {count} of {len(rows)} runs ended undecided: whether they have an equilibrium is not known. They {how}. More "
-            "most_steps of [equilibrium] can decide them"]
+            'most_steps of [equilibrium] can decide them (with engine = "implicit": engine = "auto")']
 
 
 def reduced_words(study):

@@ -304,6 +304,7 @@ class Study:
 
 TEXTS = ("no equilibrium", "failure stage", "program", "reason")  # columns of text, also where all fields are empty
 INTEGERS = ("run", "network", "exit code", "attempts")
+UNITS = {"failure day": "day"}  # of columns without a unit in their name
 
 
 def csv_table(path):
@@ -318,7 +319,7 @@ def csv_table(path):
             with contextlib.suppress(ValueError):
                 values = np.array([int(field) for field in column] if name in INTEGERS and all(column) else
                                   [float(field) if field else np.nan for field in column])
-        unit = "" if values.dtype.kind == "U" else "1"
+        unit = "" if values.dtype.kind == "U" else UNITS.get(name, "1")
         table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else unit)
     return table
 

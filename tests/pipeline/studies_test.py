@@ -1008,6 +1008,18 @@ values = [1, 2, 6]
         self.assertIn("warning: floor y (mm): 3 of 72 runs, of 2 networks, have no value; answers are of the other runs\n",
                       answers.summary(study, rows, "", [], []))
 
+    def test_snakemake_that_makes_nothing(self):
+        """It removes the empty folder of groups, as after jobs that failed; the message says what is missing."""
+        programs = self.folder / "bin"
+        programs.mkdir()
+        (programs / "snakemake").write_text("#!/bin/sh\nrmdir groups\n")
+        (programs / "snakemake").chmod(0o755)
+        (self.folder / "config.yaml").write_text("")
+        done = subprocess.run([*map(str, self.command(self.written(NETWORKS.format(runs=2)), self.folder / "out", "--snakemake", self.folder))],
+                              env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"}, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("2 of 2 groups of runs in", done.stderr)
+
     def test_interrupts_after_openturns(self):
         """A call of OpenTURNS puts a handler in the place of Python's, here the system's; Ctrl-C is heard all the same."""
         @draw_design.calls_openturns
