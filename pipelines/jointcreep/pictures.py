@@ -196,9 +196,10 @@ def write(study, rows, given, found, out):
             drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted(), order)
         if of_shares:
             drawn["parameters"] = parameters(quantity, study, values, run, given, of_shares)
-            if left := len(rows) - len(values):
-                drawn["parameters"].suptitle(f"without {left} of {len(rows)} runs, which " + (
-                    "are undecided" if quantity.what == "failed" else "have no value"), fontsize=7)
+            counted = len(answers.counted_runs(study, rows, lambda row: True))
+            if left := counted - len(values):
+                why = "undecided, or without a result" if quantity.what == "failed" else "no value"
+                drawn["parameters"].suptitle(f"{left} of {counted} runs are left out: {why}", fontsize=7)
         for name, picture in drawn.items():
             figure.draw_names_as_they_are(picture)
             figure.save(picture, out / f"{word}-{name}.png")

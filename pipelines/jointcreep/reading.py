@@ -274,7 +274,7 @@ class File:
 
 class Study:
     """The folder of a study: tables `runs`, `times`, `answers`, `convergence`, `shares`, as their CSV files have them. Numbers are
-    float, and nan where a field is empty; numbers of runs and networks and exit codes are int; columns with words are str."""
+    float, and nan where a field is empty; numbers of runs, networks and attempts and exit codes are int; columns with words are str."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -317,8 +317,9 @@ def csv_table(path):
         values = np.array(column, str)
         if name not in TEXTS:
             with contextlib.suppress(ValueError):
-                values = np.array([int(field) for field in column] if name in INTEGERS and all(column) else
-                                  [float(field) if field else np.nan for field in column])
+                values = np.array([float(field) if field else np.nan for field in column])
+                if name in INTEGERS and np.all(values == np.floor(values)):
+                    values = values.astype(int)
         unit = "" if values.dtype.kind == "U" else UNITS.get(name, "1")
         table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else unit)
     return table

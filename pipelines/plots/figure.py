@@ -217,7 +217,7 @@ def day_of(file, time):
 def wrapped(text, width):
     """Lines of a text, without a break inside of a date as day_of() has it."""
     kept = re.sub(r"\b(\d{1,2}) ([A-Z][a-z]+) (\d{4})\b|\b(day) (\d)", lambda found: found[0].replace(" ", "\u00a0"), text)
-    return [line.replace("\u00a0", " ") for line in textwrap.wrap(kept, width)]
+    return [line.replace("\u00a0", " ") for line in textwrap.wrap(kept, width, break_on_hyphens=False)]
 
 
 def ending_of(file):

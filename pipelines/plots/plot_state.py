@@ -2,7 +2,8 @@
 """The section at one state of a result file: displacement, stress or the state of the contacts. Removed rock is not
 drawn, and positions are those at the start, unless displacements are magnified.
 
-The state is its number, counted from 0, the name of the stage that it follows (blanks may be written as "-"), or "last".
+The state is its number, counted from 0, the name of the stage that it follows, this name as it is in
+names of pictures, or "last".
 
 Of a run that found no equilibrium, the last state is that before the stage that found none. Its picture also shows what happened
 after it: the rock that was excavated, and the moving blocks, with arrows along their motion. The title says why the run ended.
@@ -389,7 +390,7 @@ def draw_failure(file, section, axes, fills=""):
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        numbers = "numbers: the largest of them; " if len(moving) > 1 else ""
+        numbers = "with the numbers of the largest; " if len(moving) > 1 else ""
         label += f" ({numbers}red arrows, on a scale of their own; the longest, a block's mean, is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
     name_blocks(axes, place, moving, area)
@@ -398,11 +399,11 @@ def draw_failure(file, section, axes, fills=""):
 
 
 def name_blocks(axes, place, block, area, most=12):
-    """The numbers of the largest blocks, each at its own place; a block that is too near to a larger one has none."""
+    """The numbers of the largest blocks in the picture, each at its own place; a block that is too near to a larger one has none."""
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
     named = []
     for one in np.argsort(-area, kind="stable"):
-        if len(named) < most and all(np.abs((place[one] - other) / (high - low)).max() > 0.045 for other in named):
+        if np.all((low < place[one]) & (place[one] < high)) and len(named) < most and all(np.abs((place[one] - other) / (high - low)).max() > 0.045 for other in named):
             named.append(place[one])
             axes.text(*place[one], str(block[one]), fontsize=6, ha="center", va="center", zorder=9, path_effects=figure.HALO,
                       clip_on=True)
@@ -444,7 +445,7 @@ def window_of_failure(file, section):
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
          limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some;
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks, not together with window;
     limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")

@@ -44,6 +44,7 @@ class Install(ChainTest):
         libraries = ["store", "fields", "keys", "rock", "joint", "boundary", "creep", "model"]
         configs = ["config", "config-version", "targets", "targets-release"]
         self.assertEqual(len(headers), 7)
+        self.assertTrue(os.access(self.prefix / "share/jointcreep/profiles/slurm/slurm_status.sh", os.X_OK))
         self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [str(path.relative_to(self.prefix)) for path in headers] +
                                        [f"lib/jointcreep/lib{name}.a" for name in libraries] +
                                        [f"lib/cmake/jointcreep/jointcreep-{name}.cmake" for name in configs] + [module] * has_gdal +

@@ -126,6 +126,7 @@ class Plots(ChainTest):
         self.assertEqual({f"plot_{name}.py" for name in plots.NAMES} | {"plot_fit.py"}, {path.name for path in self.plots.glob("plot_*.py")})
         network = result.with_name("network.h5")
         for call, expected in [(lambda: plots.draw("state", network), "network.h5: there are no states in this file"),
+                               (lambda: plots.draw("state", result, window=(0, 0, 9, 9), around_failure=True), "; expected one of them"),
                                (lambda: plots.draw("states", result), 'no plot "states"; there are: section, '),
                                (lambda: plots.draw("histories", result, without=network), "network.h5: "),
                                (lambda: plots.draw("safety", result), "no runs of a factor of safety"),

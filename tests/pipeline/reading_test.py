@@ -141,7 +141,11 @@ class Files(ChainTest):
         table = reading.csv_table(path)
         self.assertEqual((list(table["run"]), list(table["name"]), table["crest (mm)"][0]), ([0, 1], ["a", "b, c"], 1.5))
         self.assertTrue(math.isnan(table["crest (mm)"][1]))
-        self.assertEqual((table.units["crest (mm)"], table.units["run"], table.rows()), ("mm", "1", 2))
+        self.assertEqual((table["run"].dtype.kind, table["failed"].dtype.kind), ("i", "f"))
+        self.assertEqual((table.units["crest (mm)"], table.units["run"], table.units["name"], table.rows()), ("mm", "1", "", 2))
+        path.write_text("run,exit code,attempts\n0,,1.5\n1,3,2\n")
+        table = reading.csv_table(path)
+        self.assertEqual((table["exit code"].dtype.kind, list(table["attempts"])), ("f", [1.5, 2.0]))
         path.write_text("run,name\n")
         self.assertEqual(reading.csv_table(path).rows(), 0)
 

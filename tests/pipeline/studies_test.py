@@ -1022,6 +1022,9 @@ values = [1, 2, 6]
 
     def test_interrupts_after_openturns(self):
         """A call of OpenTURNS puts a handler in the place of Python's, here the system's; Ctrl-C is heard all the same."""
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)  # it may be ignored, as in the background of a shell
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+
         @draw_design.calls_openturns
         def replaces_the_handler():
             ctypes.CDLL(None).signal(signal.SIGINT, 0)
