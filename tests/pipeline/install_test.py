@@ -222,7 +222,7 @@ class DebianPackage(ChainTest):
                     self.assertEqual((name, entry.linkname),
                                      ("usr/lib/python3/dist-packages/jointcreep", "../../../share/jointcreep/jointcreep"))
                 else:
-                    runs = entry.isdir() or name.startswith("usr/bin/")
+                    runs = entry.isdir() or name.startswith("usr/bin/") or name.endswith(".sh")
                     self.assertEqual(stat.S_IMODE(entry.mode), 0o755 if runs else 0o644, name)
             names = {path.lstrip("./") for path in content.getnames()}
         self.assertLessEqual({f"usr/bin/{app}" for app in APPS} | {"usr/share/jointcreep/data/slope/scene.toml",

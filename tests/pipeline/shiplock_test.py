@@ -515,7 +515,7 @@ class Shiplock(ChainTest):
         lines = back_analysis.sites_markdown({4: (one, several)}, [0, 2]).splitlines()
         self.assertEqual(lines[0].split(" | ")[3:], ["found with network 0", "found with networks 0, 2 |"])
         self.assertEqual(lines[2:], ["| 4 | on K, E and eta together | 1.2 | 1.25 (1.10 to 1.30) | 1.20 (1.00 to 1.40) |",
-                                     "| 4 | on eta | 0.7 | 9.00 (8.00 to 10.00), true factor outside | not resolved |"])
+                                     "| 4 | on eta, in addition | 0.7 | 9.00 (8.00 to 10.00), true factor outside | not resolved |"])
 
     def test_table_of_the_back_analysis(self):
         """Correlations are those of pairs, each once; a weak combination is told where there is one."""
@@ -528,7 +528,7 @@ class Shiplock(ChainTest):
                      **{f"correlation_{b}": str(correlation.get((a, b), correlation.get((b, a), 1)))
                         for b in back_analysis.MADE}} for a in back_analysis.MADE]
         told = back_analysis.markdown(rows(""), 706, 61.2)
-        for words in ("| on E | 0.7 | 1.100 | 1.000 to 1.200 |", "706 readings", "chi squared 668 of 703",
+        for words in ("| on E, in addition | 0.7 | 1.100 | 1.000 to 1.200 |", "706 readings", "chi squared 668 of 703",
                       "K and E -0.96, K and eta -0.53, E and eta 0.72.", "5 runs, 61 s of processor time"):
             self.assertIn(words, told)
         self.assertNotIn("warns", told)
