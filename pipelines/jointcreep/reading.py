@@ -290,6 +290,7 @@ class Study:
     def answer(self, statistic, quantity=None):
         """Value, and ends of the interval, of a statistic; of the study's only quantity without a name. nan where there is none."""
         table = self.answers
+        statistic = statistic.replace("probability of no equilibrium", "probability")  # the words of the summary
         if quantity and quantity not in table["quantity"] and f"{quantity}, lower end" in table["quantity"]:
             quantity += ", lower end"  # of a factor of safety
         rows = np.flatnonzero((table["statistic"] == statistic) & ((table["quantity"] == quantity) if quantity else True))
