@@ -19,7 +19,7 @@ import numpy as np
 from . import failure, files, intervals
 from .design import calls_openturns, openturns
 from .intervals import CONFIDENCE
-from .quantities import MOVING, NO_EQUILIBRIUM, UNDECIDED, ending_of, file_of
+from .quantities import MOVING, NO_EQUILIBRIUM, TO_FAIL, UNDECIDED, ending_of, file_of
 from .study_file import BY_STOP_RULE, ENDS, EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
@@ -627,7 +627,7 @@ def warning_words(rows):
 def with_unit(name, quantity):
     """The name of a statistic, where it has a limit with the unit of this; that of a failure says what it is the probability of."""
     if quantity.what == "failed":
-        return name.replace("probability", "probability of no equilibrium", 1)
+        return name.replace("probability", TO_FAIL, 1)
     return name if quantity.unit == "1" else re.sub(r"^(probability (?:above|below) [^ ,]+)", rf"\1 {quantity.unit}", name)
 
 

@@ -51,8 +51,8 @@ Exit codes:
   2  the command line, the study, the scene or a file is not as expected
   3  run: no equilibrium was found; study: no run ended with a value, so there are no answers
   4  a file could not be read or written, or programs of runs were stopped; the same command continues
-  130, 143  stopped by Ctrl-C, by SIGTERM; the same command continues
   5  internal error, or out of memory
+  130, 143  stopped by Ctrl-C, by SIGTERM; the same command continues
 
 Example:
   jointcreep run scene.toml -o out/ -- --no-creep

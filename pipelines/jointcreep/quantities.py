@@ -9,6 +9,7 @@ from . import files, histories, reading
 from .errors import NotWanted
 
 NO_EQUILIBRIUM = 3  # exit code of demsolve
+TO_FAIL = "probability of no equilibrium"  # what a summary calls the statistic "probability" of `failed`
 MOVING, UNDECIDED = "blocks move", "undecided"  # what it found then
 
 

@@ -25,6 +25,7 @@ import numpy as np
 
 from . import files, histories
 from .errors import NotWanted
+from .quantities import TO_FAIL
 
 AXES = {2: ["x", "y"], 3: ["xx", "yy", "xy"]}  # parts of a dataset's last dimension
 IN_PLANE, IN_SPACE, ALONG_JOINT = ["x", "y"], ["x", "y", "z"], ["normal", "shear"]
@@ -290,7 +291,7 @@ class Study:
     def answer(self, statistic, quantity=None):
         """Value, and ends of the interval, of a statistic; of the study's only quantity without a name. nan where there is none."""
         table = self.answers
-        statistic = statistic.replace("probability of no equilibrium", "probability")  # the words of the summary
+        statistic = statistic.replace(TO_FAIL, "probability", 1)
         if quantity and quantity not in table["quantity"] and f"{quantity}, lower end" in table["quantity"]:
             quantity += ", lower end"  # of a factor of safety
         rows = np.flatnonzero((table["statistic"] == statistic) & ((table["quantity"] == quantity) if quantity else True))

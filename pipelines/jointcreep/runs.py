@@ -356,15 +356,17 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
     if not missing:
         return ""
     working = by_snakemake(out, programs, missing, jobs, profile, lock) if profile else by_processes(out, programs, missing, jobs)
-    folder = out / "groups"
+
+    def look():
+        (out / "groups").mkdir(exist_ok=True)  # Snakemake removes an empty folder of a job that failed
+        tell()
+
     with contextlib.closing(working):
         for _ in working:
-            folder.mkdir(exist_ok=True)  # Snakemake removes an empty folder of a job that failed
-            tell()
+            look()
             if time.monotonic() > deadline:
                 return TIMED_OUT
-    folder.mkdir(exist_ok=True)
-    tell()
+    look()
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if missing:
         raise NotDone(f"{len(missing)} of {len(names)} groups of runs in {out / 'groups'} could not be made; messages above say "

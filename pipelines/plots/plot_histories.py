@@ -121,7 +121,8 @@ def histories_without(path, file, histories):
     """The histories of the result file without creep. histories(file): those that are drawn."""
     with figure.checked(path) as other:
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
-            raise figure.NotWanted(f"this was made from another scene than {file.filename}; expected a result of the same joints.h5, made by demsolve --no-creep")
+            raise figure.NotWanted(f"this was made from another scene than {file.filename}; expected a result of the same joints.h5, "
+                                   "made by demsolve --no-creep")
         if "creep" in figure.scene_of(file) and "--no-creep" not in figure.texts(other, "/provenance/options")[-1].split():
             raise figure.NotWanted("this run has creep; expected one of demsolve --no-creep")
         if figure.strength_factor_of(other) != figure.strength_factor_of(file):

@@ -400,10 +400,11 @@ def draw_failure(file, section, axes, fills=""):
 
 def name_blocks(axes, place, block, area, most=12):
     """The numbers of the largest blocks in the picture, each at its own place; a block that is too near to a larger one has none."""
-    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    size = np.ptp([axes.get_xlim(), axes.get_ylim()], axis=1)
+    seen = [one for one in np.argsort(-area, kind="stable") if figure.is_in(axes, place[one])]
     named = []
-    for one in np.argsort(-area, kind="stable"):
-        if np.all((low < place[one]) & (place[one] < high)) and len(named) < most and all(np.abs((place[one] - other) / (high - low)).max() > 0.045 for other in named):
+    for one in seen:
+        if len(named) < most and all(np.abs((place[one] - other) / size).max() > 0.045 for other in named):
             named.append(place[one])
             axes.text(*place[one], str(block[one]), fontsize=6, ha="center", va="center", zorder=9, path_effects=figure.HALO,
                       clip_on=True)

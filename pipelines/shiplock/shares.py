@@ -492,12 +492,13 @@ def main():
     factor = [f"({name.removesuffix(', times')})" for name, _ in names]
     more = [f"{factor[i]}²" if i == j else f"{factor[i]} · {factor[j]}" for i, j in (term for term in fit.terms if len(term) == 2)]
     facts = [
-        f"{number} runs, two networks for each of {number // 2} sets of values; {failed} runs without equilibrium; {len(rows)} sets with two results are used.",
+        f"{number} runs, two networks for each of {number // 2} sets of values; {failed} runs without equilibrium; {len(rows)} sets with two "
+        "results are used.",
         "Mean and standard deviation: " + "; ".join(
             f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
         "The network's total share (*in all*), computed without the polynomial, from the differences of the pairs of runs: " + ", ".join(
             f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
-        f"Share of the variance of the logarithm of each result that neither polynomial nor network explains (lack of fit): "
+        "Share of the variance of the logarithm of each result that neither polynomial nor network explains (lack of fit): "
         f"{lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
         "Squares and products in the polynomial: " + ("; ".join(more) or "none") + ".",
         f"Logarithms of stress, and of joint stiffness times spacing: their correlation is {told[0]:.2f} in all sets. In the {told[2]} sets "

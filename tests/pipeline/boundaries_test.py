@@ -169,76 +169,31 @@ class Rollers(OfBoundaries):
 
 
 class SlopingGround(OfBoundaries):
-    SCENE = """[section]
-outline_m = [[0, 0], [120, 0], [120, {high:.12g}], [0, 60]]
-rock = "rock"
-gravity_m_per_s2 = 9.81
-[[rock]]
-name = "rock"
-density_kg_per_m3 = 2500
-youngs_modulus_GPa = 8
-poissons_ratio = 0.25
-[[joint_material]]
-name = "joint"
-normal_stiffness_MPa_per_m = 5000
-shear_stiffness_MPa_per_m = 1500
-cohesion_MPa = 0.02
-friction_angle_deg = 34
-tensile_strength_MPa = 0
-[[joint_set]]
-name = "steep"
-material = "joint"
-trace_angle = {{ law = "constant", mean_deg = 50 }}
-spacing = {{ law = "negative exponential", mean_m = 6 }}
-persistence = 1
-[[joint_set]]
-name = "cross"
-material = "joint"
-trace_angle = {{ law = "constant", mean_deg = -80 }}
-spacing = {{ law = "negative exponential", mean_m = 8 }}
-persistence = 1
-[in_situ_stress]
-ground_m = [[0, 60], [120, {high:.12g}]]
-{stress}
-[[boundary]]
-from_m = [0, 0]
-to_m = [120, 0]
-fix = "xy"
-[[boundary]]
-from_m = [0, 0]
-to_m = [0, 60]
-fix = "xy"
-[[boundary]]
-from_m = [120, 0]
-to_m = [120, {high:.12g}]
-fix = "xy"
-[schedule]
-start = 0
-end = 1
-[[point]]
-name = "ground"
-at_m = [60, 65]
-first_reading = 0
-[zones]
-size_m = 4
-[random]
-seed = 1
-"""
+    SLOPE, RATIO = np.tan(np.radians(10)), 0.6
+    WIDTH, LOW = 120.0, 60.0  # [m]
 
     def first_equilibrium(self, stress):
-        """Steps to the in-situ equilibrium, and what slip dissipates in it."""
-        data = datasets(self.chain.result(self.SCENE.format(high=60 + 120 * self.SLOPE, stress=stress)))
+        """Steps to the in-situ equilibrium, and what slip dissipates in it. Two sets of joints cross the section."""
+        high = self.LOW + self.SLOPE * self.WIDTH
+        corners = [[0, 0], [self.WIDTH, 0], [self.WIDTH, high], [0, self.LOW]]
+        joints = [joint(f"{name} {n}", [x, -1], [x + 99 / np.tan(np.radians(angle)), 98])
+                  for name, angle, distance in (("steep", 50, 8), ("cross", 100, 10))
+                  for n, x in enumerate(np.arange(-99.0, 139, distance))]
+        text = scene(corners, joints, [held(corners[1], corners[0]), held(corners[0], corners[3]), held(corners[1], corners[2])],
+                     [material("joint", 5000, 1500, friction=34, cohesion=0.02)], zone=4.0, density=DENSITY, modulus=8, poisson=POISSON,
+                     in_situ={"ground_m": [corners[3], corners[2]], **stress})
+        data = datasets(self.chain.result(text))
         return data["/equilibria/steps"][0], data["/equilibria/dissipated_energy"][0]
-
-    SLOPE, RATIO, WEIGHT = np.tan(np.radians(10)), 0.6, 2500 * 9.81 / 1e6  # [-], [-], [MPa/m]
 
     def test_stress_in_balance(self):
         """The stress of docs/section.md below ground that rises by SLOPE is in balance with the weight: no joint slips. By the ratio alone
         it is not."""
         gradients = {"compression_xx": self.RATIO, "compression_yy": 1 + self.RATIO * self.SLOPE**2, "shear_xy": -self.RATIO * self.SLOPE}
-        balanced = "".join(f"{name}_MPa = 0\n{name}_gradient_MPa_per_m = {self.WEIGHT * one:.12g}\n" for name, one in gradients.items())
+        weight = DENSITY * GRAVITY / 1e6  # [MPa/m]
+        balanced = {**{f"{name}_MPa": 0 for name in gradients},
+                    **{f"{name}_gradient_MPa_per_m": weight * one for name, one in gradients.items()}}
         self.assertEqual(self.first_equilibrium(balanced), (0, 0))
-        steps, dissipated = self.first_equilibrium(f"horizontal_stress_ratio = {self.RATIO}")
+        steps, dissipated = self.first_equilibrium({"horizontal_stress_ratio": self.RATIO})
         self.assertGreater(steps, 0)
         self.assertGreater(dissipated, 0)
 

@@ -42,9 +42,10 @@ def joint(name, start, end, of="joint"):
 
 
 def scene(outline, joints, boundaries, materials, *, gravity=GRAVITY, stages=(), points=(), zone=1.0,
-          kind="constant strain", density=2500, modulus=10, poisson=0, stress=(0, 0, 0), end=None, more=""):
+          kind="constant strain", density=2500, modulus=10, poisson=0, stress=(0, 0, 0), in_situ=None, end=None, more=""):
     """A scene. `stages` are lists of polygons, removed on days 1, 2 ...; `points` are places, named by their number;
-    `modulus` is in GPa, `stress` the uniform {xx, yy, xy} in MPa, tension positive."""
+    `modulus` is in GPa, `stress` the uniform {xx, yy, xy} in MPa, tension positive; `in_situ` has the keys of
+    [in_situ_stress] in its place."""
     xx, yy, xy = stress
     parts = [
         table("[section]", {"outline_m": outline, "rock": "rock", "gravity_m_per_s2": gravity}),
@@ -52,9 +53,9 @@ def scene(outline, joints, boundaries, materials, *, gravity=GRAVITY, stages=(),
                            "poissons_ratio": poisson}),
         *(table("[[joint_material]]", of) for of in materials),
         *(table("[[joint]]", of) for of in joints),
-        table("[in_situ_stress]", {"elevation_m": 0, "compression_xx_MPa": -xx, "compression_yy_MPa": -yy,
-                                   "shear_xy_MPa": xy, "compression_xx_gradient_MPa_per_m": 0,
-                                   "compression_yy_gradient_MPa_per_m": 0, "shear_xy_gradient_MPa_per_m": 0}),
+        table("[in_situ_stress]", in_situ or {"elevation_m": 0, "compression_xx_MPa": -xx, "compression_yy_MPa": -yy,
+                                              "shear_xy_MPa": xy, "compression_xx_gradient_MPa_per_m": 0,
+                                              "compression_yy_gradient_MPa_per_m": 0, "shear_xy_gradient_MPa_per_m": 0}),
         *(table("[[boundary]]", of) for of in boundaries),
         table("[schedule]", {"start": 0, "end": end or 1 + len(stages)}),
         *(table("[[stage]]", {"name": f"stage {n}", "date": n, "remove_m": list(polygons)})

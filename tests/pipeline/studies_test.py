@@ -580,6 +580,7 @@ class Failures(Studies):
         study = jointcreep.read(out)
         self.assertEqual(list(study.runs["no equilibrium"]), [row["no equilibrium"] for row in rows])
         self.assertEqual(study.answer("probability, at least", "failed"), intervals.probability(1, 6))
+        self.assertEqual(study.answer("probability of no equilibrium, at least", "failed"), intervals.probability(1, 6))
         self.assertEqual(study.answer("probability, at most", "failed"), intervals.probability(3, 6))
         above = sum(float(row["floor y (mm)"]) > 0.1 for row in rows if row["floor y (mm)"])
         self.assertEqual(study.answer("probability above 0.1, of stable runs", "floor y"), intervals.probability(above, 3))
